@@ -7,7 +7,7 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_pipeline::{limits, load, method};
 use etendue_predict::Applicability;
-use etendue_report::table::aligned;
+use etendue_report::table::{aligned, csv};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
@@ -66,11 +66,14 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let header = header(args);
     if let Some(file) = csv {
-        file.write(&csv_of(&header, &rows)?)?;
+        let digits = rows.iter().map(|row| cells(row, |x| format!("{x:?}"), ""));
+        file.write(&csv(&header, digits)?)?;
     }
     let mut warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
     warnings.dedup();
-    let cells = rows.iter().map(cells);
+    let cells = rows
+        .iter()
+        .map(|row| cells(row, |x| format!("{x:.3}"), "–"));
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
         "A bandwidth is the frequency below which 95 % of the energy lies. The bandwidth of the lobe is in cycles per radian. All other bandwidths are at a fixed point of the plane, in cycles per unit slope.",
@@ -107,34 +110,11 @@ fn header(args: &BandwidthArgs) -> Vec<String> {
     header
 }
 
-fn cells(row: &BandwidthRow) -> Vec<String> {
-    let mut cells: Vec<String> = row.point.iter().map(|x| number(*x)).collect();
+/// Returns a row of the table; cells without a number have the text `none`.
+fn cells(row: &BandwidthRow, shown: fn(f64) -> String, none: &str) -> Vec<String> {
+    let mut cells: Vec<String> = row.point.iter().map(|x| shown(*x)).collect();
     cells.push(row.plane.clone());
     let numbers = row.numbers.iter();
-    cells.extend(numbers.map(|x| x.map_or("–".to_owned(), number)));
+    cells.extend(numbers.map(|x| x.map_or(none.to_owned(), shown)));
     cells
-}
-
-/// Returns a row of the table with all digits; fields without a number are empty.
-fn record(row: &BandwidthRow) -> Vec<String> {
-    let digits = |x: &f64| format!("{x:?}");
-    let mut cells: Vec<String> = row.point.iter().map(digits).collect();
-    cells.push(row.plane.clone());
-    let numbers = row.numbers.iter();
-    cells.extend(numbers.map(|x| x.as_ref().map_or(String::new(), digits)));
-    cells
-}
-
-/// Returns the table of bandwidths as CSV.
-fn csv_of(header: &[String], rows: &[BandwidthRow]) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let lines = rows.iter().map(record);
-    for line in std::iter::once(header.to_vec()).chain(lines) {
-        writer.write_record(line).map_err(Failure::cannot_run)?;
-    }
-    writer.into_inner().map_err(Failure::cannot_run)
-}
-
-fn number(x: f64) -> String {
-    format!("{x:.3}")
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, refused, scene};
+use crate::common::{SCENE, fails, passes, refused, scene};
 use std::fs;
 
 /// Returns a folder with a scene of the repository as `glossy.ron`, and a scene without a glossy
@@ -18,8 +18,7 @@ fn folder() -> tempfile::TempDir {
 fn a_sweep_measures_what_the_criterion_says() {
     let folder = folder();
     let arguments = "bandwidth glossy.ron --measure --photons 300000 --sweep surfaces.0.form.Sphere=0..0.5:2 --csv b.csv";
-    let output = call(folder.path(), arguments);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let output = passes(folder.path(), arguments);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
         text.contains("B (Eq. 20)") && text.contains("  0.500  eye  "),
@@ -47,8 +46,7 @@ fn a_sweep_measures_what_the_criterion_says() {
 fn a_grid_that_ends_too_soon_is_told() {
     let folder = folder();
     let arguments = "bandwidth glossy.ron --measure --photons 20000 --set frequencies.nu.max=3";
-    let output = call(folder.path(), arguments);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let output = passes(folder.path(), arguments);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("warning: eye: a bandwidth of"), "{text}");
 }
@@ -79,9 +77,7 @@ fn bad_sweeps_and_scenes_are_refused() {
         refused(path, arguments, parts);
     }
     for sweep in ["a=0..1", "a=0..1:0", "a=0..x:3", "0..1:3", "a=0..inf:3"] {
-        let output = call(path, &format!("bandwidth glossy.ron --sweep {sweep}"));
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{sweep}");
+        let message = fails(path, &format!("bandwidth glossy.ron --sweep {sweep}"), 2);
         assert!(message.contains("PATH=A..B:N"), "{message}");
     }
     let mut left: Vec<String> = fs::read_dir(path)
@@ -90,6 +86,5 @@ fn bad_sweeps_and_scenes_are_refused() {
         .collect();
     left.sort();
     assert_eq!(left, ["glossy.ron", "small.ron"]);
-    let output = call(path, "bandwidth glossy.ron --csv absent/b.csv");
-    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    fails(path, "bandwidth glossy.ron --csv absent/b.csv", 3);
 }

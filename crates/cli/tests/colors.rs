@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{array, call, etendue, json, refused, scene};
+use crate::common::{array, etendue, fails, json, passes, refused, scene};
 use ndarray::Array2;
 use std::fs;
 
@@ -15,11 +15,10 @@ fn channels_share_their_photons() {
     let path = folder.path();
     let colors = scene("colors.ron");
     let colors = colors.display();
-    let output = call(
+    passes(
         path,
         &format!("run {colors} {SHORT_RUN} --rgb --save photons --out out"),
     );
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
     for command in ["report out --out page.html", "diff out out/red"] {
         let words = command.split_whitespace();
         let output = etendue().current_dir(path).args(words).output().unwrap();
@@ -55,7 +54,7 @@ fn channels_share_their_photons() {
     }
     // A run of one channel is the same run.
     let line = format!("run {colors} {SHORT_RUN} --color green --save photons --out one");
-    assert_eq!(call(path, &line).status.code(), Some(0));
+    passes(path, &line);
     let slices = |of: &str| -> ndarray::Array3<f64> {
         array(&path.join(of).join("leaving/slices.npz"), "sigma")
     };
@@ -71,8 +70,7 @@ fn a_foreign_page_is_kept() {
     fs::create_dir(path.join("out")).unwrap();
     fs::write(path.join("out/report.html"), "mine").unwrap();
     let line = format!("run {} --rgb --out out", scene("colors.ron").display());
-    let output = call(path, &line);
-    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    fails(path, &line, 3);
     let files: Vec<_> = fs::read_dir(path.join("out")).unwrap().collect();
     assert_eq!(files.len(), 1, "{files:?}");
     assert_eq!(

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{call, etendue, files, json, refused};
+use crate::common::{call, files, json, passes, refused, told};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -31,15 +31,10 @@ fn entry(plane: &Value, matrix: &str, i: usize, j: usize) -> f64 {
     plane[matrix][i][j].as_f64().unwrap()
 }
 
-fn done(path: &Path, line: &str) {
-    let output = call(path, line);
-    assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
-}
-
 #[test]
 fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     let folder = folder();
-    done(folder.path(), "covariance lamp.ron --out out");
+    passes(folder.path(), "covariance lamp.ron --out out");
     let index = json(&folder.path().join("out/covariance.json"));
     let full = &index["planes"][0];
     // The variance of a Hann window of half-width h is 1/12h².
@@ -81,7 +76,7 @@ fn covariances_have_the_same_bytes_on_any_threads() {
         let line = format!(
             "covariance lamp.ron --plane cut --photons 20000 --threads {threads} --out c{threads}"
         );
-        done(folder.path(), &line);
+        passes(folder.path(), &line);
     }
     let of = |name: &str| files(&folder.path().join(name));
     assert_eq!(of("c1"), of("c2"));
@@ -95,12 +90,8 @@ fn planes_are_chosen_by_their_names() {
         "covariance lamp.ron --plane none --out out",
         &["--plane none", "full, cut"],
     );
-    let output = etendue()
-        .current_dir(folder.path())
-        .args("covariance lamp.ron --plane full --photons 2^14 --out out".split(' '))
-        .output()
-        .unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
+    let line = "covariance lamp.ron --plane full --photons 2^14 --out out";
+    let said = told(folder.path(), line, 0);
     assert!(
         said.contains("νu νu") && said.contains("full: |ρ| ≤ 30"),
         "{said}"

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common;
-use crate::common::{SCENE, call, etendue, json, refused, sealed};
+use crate::common::{SCENE, call, json, loud, refused, sealed, told};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -28,12 +28,7 @@ fn runs(each: &[&str]) -> TempDir {
 
 /// Returns the exit code and the text of `etendue diff`.
 fn diff(folder: &Path, arguments: &str) -> (Option<i32>, String) {
-    let output = etendue()
-        .current_dir(folder)
-        .arg("diff")
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
+    let output = loud(folder, &format!("diff {arguments}"));
     assert!(output.stderr.is_empty(), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
     (output.status.code(), text)
@@ -217,11 +212,7 @@ fn planes_that_one_result_lacks_are_named() {
         folder.path(),
         "run small.ron --photons 2^14 --seed 2 --out other",
     );
-    let output = etendue()
-        .current_dir(folder.path())
-        .args(["diff", "a", "other"])
-        .output()
-        .unwrap();
+    let output = loud(folder.path(), "diff a other");
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("no plane in common"), "{message}");
@@ -231,12 +222,7 @@ fn planes_that_one_result_lacks_are_named() {
 #[track_caller]
 fn refuses(folder: &Path, parts: &[&str]) {
     for arguments in ["a b", "b a"] {
-        let output = etendue()
-            .current_dir(folder)
-            .arg("diff")
-            .args(arguments.split_whitespace())
-            .output()
-            .unwrap();
+        let output = loud(folder, &format!("diff {arguments}"));
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{parts:?}: {message}");
         assert_eq!(message.lines().count(), 1, "{message}");
@@ -393,21 +379,12 @@ fn a_compact_result_is_whole() {
     for name in ["report.html", "path.png", "receiver/slices.npz"] {
         assert!(listed.iter().any(|listed| *listed == name), "{name}");
     }
-    let output = call_report(folder.path());
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    told(folder.path(), "report a --out page.html", 0);
     refused(
         folder.path(),
         "run nothing.ron --compact --out out",
         &["nothing.ron"],
     );
-}
-
-fn call_report(folder: &Path) -> std::process::Output {
-    etendue()
-        .current_dir(folder)
-        .args(["report", "a", "--out", "page.html"])
-        .output()
-        .unwrap()
 }
 
 /// The folders in `results/` are complete: each listed file is unchanged and small.
@@ -431,18 +408,7 @@ fn committed_results_are_whole() {
     }
     let out = tempfile::tempdir().unwrap();
     let page = out.path().join("page.html");
-    let [report, diff] = [
-        &["report", "fig9b", "fig10", "--out"][..],
-        &["diff", "fig9b", "fig9b"],
-    ]
-    .map(|arguments| {
-        let mut command = etendue();
-        command.current_dir(&results).args(arguments);
-        if arguments[0] == "report" {
-            command.arg(&page);
-        }
-        command.output().unwrap()
-    });
-    assert_eq!(report.status.code(), Some(0), "{report:?}");
-    assert_eq!(diff.status.code(), Some(0), "{diff:?}");
+    let report = format!("report fig9b fig10 --out {}", page.display());
+    told(&results, report, 0);
+    told(&results, "diff fig9b fig9b", 0);
 }

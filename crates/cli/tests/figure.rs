@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, array, call, files, json, refused};
+use crate::common::{SCENE, array, files, json, passes, refused};
 use etendue_field::Complex;
 use ndarray::{Array1, Array2};
 use std::fs;
@@ -13,8 +13,7 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     let path = folder.path();
     for threads in [1, 3] {
         let arguments = format!("figure 7 --quality draft --out f{threads} --threads {threads}");
-        let output = call(path, &arguments);
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let output = passes(path, &arguments);
         assert!(output.stdout.is_empty() && output.stderr.is_empty());
     }
     let all = files(&path.join("f1"));
@@ -58,8 +57,7 @@ fn a_figure_is_pictures_arrays_and_recipe() {
 #[test]
 fn curves_have_a_table() {
     let folder = tempfile::tempdir().unwrap();
-    let output = call(folder.path(), "figure 5 --out f");
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(folder.path(), "figure 5 --out f");
     let csv = fs::read_to_string(folder.path().join("f/5/figure.csv")).unwrap();
     // ĝ(0) = 2, Ĝ(0) = π.
     let at_zero = |name: &str| {
@@ -85,8 +83,7 @@ fn photons_tell_the_criteria_from_their_print() {
     let path = folder.path();
     for threads in [1, 3] {
         let arguments = format!("figure 15 --quality draft --out f{threads} --threads {threads}");
-        let output = call(path, &arguments);
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        passes(path, &arguments);
     }
     let all = files(&path.join("f1"));
     assert!(
@@ -165,7 +162,7 @@ fn a_scene_of_ones_own_has_a_figure_of_its_path() {
     let folder = own();
     let path = folder.path();
     let call_again = "figure wide.ron --set run.seed=7 --quality draft --out f";
-    assert_eq!(call(path, call_again).status.code(), Some(0));
+    passes(path, call_again);
     let index = json(&path.join("f/wide/figure.json"));
     assert_eq!(
         index["command"],
@@ -187,13 +184,13 @@ fn scenes_stand_side_by_side_at_a_plane() {
     let folder = own();
     let path = folder.path();
     let both = "figure wide.ron narrow.ron --quality draft --out f";
-    assert_eq!(call(path, both).status.code(), Some(0));
+    passes(path, both);
     let drawn = svg(path, "f/wide-narrow");
     for text in [">receiver<", ">wide<", ">narrow<"] {
         assert!(drawn.contains(text), "{text}");
     }
     let light = format!("{both} --plane light --force");
-    assert_eq!(call(path, &light).status.code(), Some(0));
+    passes(path, &light);
     assert!(svg(path, "f/wide-narrow-light").contains(">light<"));
 }
 
@@ -203,7 +200,7 @@ fn a_style_changes_how_a_figure_looks_and_not_its_numbers() {
     let path = folder.path();
     for (style, out) in [("", "a"), ("--style plain.ron", "b")] {
         let made = format!("figure wide.ron --quality draft {style} --out {out}");
-        assert_eq!(call(path, &made).status.code(), Some(0));
+        passes(path, &made);
     }
     let [usual, plain] = ["a", "b"].map(|out| svg(path, &format!("{out}/wide")));
     let width = |svg: &str| -> u32 {

@@ -46,190 +46,9 @@ fn refused(output: &Output, message: &str) {
     assert_eq!(output.status.code(), Some(2), "{told}");
 }
 
-/// For each mistake: the text in the scene, the beginner's text, and the entire message after the
-/// file name.
-const MISTAKES: &[[&str; 3]] = &[
-    // A number in place of a vector.
-    [
-        "size: (0.2, 0.2)",
-        "size: 0.2",
-        "line 2, column 47: light.size is 0.2; allowed: side lengths along X and Y, in metres, such as (0.2, 0.1)",
-    ],
-    // Two coordinates instead of three.
-    [
-        "center: (0, 0, 1)",
-        "center: (0, 1)",
-        "line 5, column 38: blockers[0].center is (0, 1); allowed: a place in the world, in metres, such as (0, 0, 1)",
-    ],
-    // Brackets instead of parentheses.
-    [
-        "center: (0, 0, 2)",
-        "center: [0, 0, 2]",
-        "line 10, column 42: surfaces[0].center is [0, 0, 2]; allowed: a place in the world, in metres, such as (0, 0, 1)",
-    ],
-    // A half-width without the name of its profile.
-    [
-        "x: Hann(0.5)",
-        "x: 0.5",
-        "line 16, column 17: window.x is 0.5; allowed: a profile with its half-width in metres, such as Hann(0.5)",
-    ],
-    // A name in place of a position.
-    [
-        r#"Before("floor")"#,
-        r#""floor""#,
-        r#"line 14, column 31: planes[0].at is "floor"; allowed: Emission, Distance(…), Before(…) or After(…), such as Before("floor")"#,
-    ],
-    // A name without quotes.
-    [
-        r#"["floor"]"#,
-        "[floor]",
-        r#"line 12, column 62: path.visits[0] is floor; allowed: the name of a surface in quotes, such as "floor""#,
-    ],
-    // One name in place of a list of names.
-    [
-        r#"["floor"]"#,
-        r#""floor""#,
-        r#"line 12, column 61: path.visits is "floor"; allowed: a list of names of surfaces, such as ["floor"]"#,
-    ],
-    // The format of a later version, before the fields of that version.
-    [
-        "(\n    light:",
-        "(\n    format: 2, later: 1, light:",
-        "line 2, column 13: format is 2; allowed: a format that this version reads, such as 1",
-    ],
-    // A field spelt wrongly.
-    [
-        "pitch:",
-        "pich:",
-        "line 6, column 13: blockers[0].pich is no field (did you mean pitch?); allowed: name, center, count, pitch, fill, jitter, seed",
-    ],
-    // A missing field.
-    [
-        " pitch: 0.2,",
-        "",
-        "line 4, column 9: blockers[0].pitch is missing; allowed: a length in metres, such as 0.2",
-    ],
-    // A variant spelt wrongly.
-    [
-        "Rectangle(name",
-        "Rectangel(name",
-        r#"line 10, column 9: surfaces[0] is Rectangel (did you mean Rectangle?); allowed: Rectangle, Mesh, Smooth, such as Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))"#,
-    ],
-    // A variant in lower case.
-    [
-        "x: Hann",
-        "x: hann",
-        "line 16, column 17: window.x is hann (did you mean Hann?); allowed: Hann, Box, Gaussian, such as Hann(0.5)",
-    ],
-    // A surface spelt wrongly.
-    [
-        r#"["floor"]"#,
-        r#"["flor"]"#,
-        r#"line 12, column 62: path.visits[0] is "flor" (did you mean floor?); allowed: one of the surfaces: floor"#,
-    ],
-    // Blockers spelt wrongly.
-    [
-        r#"Before("floor")"#,
-        r#"After("sqares")"#,
-        r#"line 14, column 31: planes[0].at is After("sqares") (did you mean squares?); allowed: one of squares, floor"#,
-    ],
-    // A missing comma.
-    [
-        "(0.2, 0.2)),",
-        "(0.2, 0.2))",
-        "line 3, column 5: the scene: unexpected `blockers`; allowed: a comma before it, or a closing bracket",
-    ],
-    // A missing bracket.
-    [
-        "size: (6, 6)),",
-        "size: (6, 6),",
-        "line 11, column 5: surfaces[0]: unexpected `]`; allowed: the name of a field, or `)`",
-    ],
-    // A decimal comma.
-    [
-        "pitch: 0.2",
-        "pitch: 0,2",
-        "line 6, column 22: blockers[0]: unexpected `2`; allowed: the name of a field; decimals have a point, such as 0.1",
-    ],
-    // A number with a unit.
-    [
-        "pitch: 0.2",
-        "pitch: 20cm",
-        "line 6, column 22: blockers[0]: unexpected `cm`; allowed: a number without a unit",
-    ],
-    // A number in the notation of the command line.
-    [
-        "pitch: 0.2",
-        "pitch: 2^20",
-        "line 6, column 21: blockers[0]: unexpected `^20`; allowed: a number without the sign ^, such as 1_048_576 or 1e6",
-    ],
-    // A number in quotes.
-    [
-        "pitch: 0.2",
-        r#"pitch: "0.2""#,
-        r#"line 6, column 20: blockers[0].pitch is "0.2"; allowed: a length in metres, such as 0.2"#,
-    ],
-    // A percentage in place of a share.
-    [
-        "fill: 0.6",
-        "fill: 60",
-        "line 6, column 31: blockers[0].fill is 60; allowed: above 0, at most 1: a share of the pitch",
-    ],
-    // A floor that lies behind the light.
-    [
-        "(0, 0, 2)",
-        "(0, 0, -2)",
-        "line 10, column 42: surfaces[0].center is at distance -2 m from the light; allowed: a place in front of the light, along path.direction",
-    ],
-    // A floor of a negative size.
-    [
-        "(6, 6)",
-        "(6, -6)",
-        "line 10, column 63: surfaces[0].size[1] is -6; allowed: 1e-9 to 1e9",
-    ],
-    // No direction.
-    [
-        "direction: (0, 0, 1)",
-        "direction: (0, 0, 0)",
-        "line 12, column 23: path.direction and path.x_axis are (0, 0, 0) and (1, 0, 0); allowed: two directions that are not parallel, neither of length 0",
-    ],
-    // A plane that lies beyond the end of the path.
-    [
-        r#"Before("floor")"#,
-        "Distance(4.5)",
-        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 m to the last surface at 2 m, or from this surface to 4 m, where an object ends the path",
-    ],
-    // A jitter that would make squares overlap.
-    [
-        "fill: 0.6",
-        "fill: 0.6, jitter: 0.7",
-        "line 6, column 44: blockers[0].jitter is 0.7; allowed: 0 to 1 − fill, which is 0.4",
-    ],
-    // A window of zero width.
-    [
-        "x: Hann(0.5)",
-        "x: Hann(0)",
-        "line 16, column 17: window.x is 0; allowed: 1e-9 to 1e9",
-    ],
-    // Two planes with the same name.
-    [
-        r#"Before("floor")),"#,
-        r#"Before("floor")), (name: "arrival", at: Emission),"#,
-        r#"line 14, column 56: planes[1].name is "arrival"; allowed: a name that no other plane has"#,
-    ],
-    // Blockers at the same distance as the floor.
-    [
-        "(0, 0, 1), count",
-        "(0, 0, 2), count",
-        "line 5, column 38: blockers[0].center is at distance 2 m from the light; allowed: a place before the first surface of the path, at 2 m",
-    ],
-    // Half a photon.
-    [
-        "1e6",
-        "1.5",
-        "line 18, column 20: run.photons is 1.5; allowed: a whole number, such as 1e7",
-    ],
-];
+/// Mistakes. Each has a line that describes it, a line `-` with the text in the scene, a line `+`
+/// with the beginner's text, and a line `!` with the entire message after the file name.
+const MISTAKES: &str = include_str!("first_scenes.txt");
 
 const CUT: &str = "line 15, column 7: the scene: the file ends here, but a bracket is still open; allowed: the missing fields and `)`";
 
@@ -255,18 +74,28 @@ const SET: &[[&str; 2]] = &[
 
 #[test]
 fn mistakes_are_told_with_their_place_and_what_is_wanted() {
-    for [from, to, message] in MISTAKES {
-        refused(&check(from, to, &[]), message);
+    let mut found = 0;
+    for mistake in MISTAKES.split("\n\n") {
+        let line = |mark: char| {
+            mistake
+                .lines()
+                .find_map(|line| line.strip_prefix(mark))
+                .unwrap()
+        };
+        let [from, to, message] = ['-', '+', '!'].map(line);
+        refused(
+            &check(&from.replace("\\n", "\n"), &to.replace("\\n", "\n"), &[]),
+            message,
+        );
+        found += 1;
     }
+    assert_eq!(found, 30);
 }
 
 /// A scene file that ends too early.
 #[test]
 fn a_file_cut_short_is_told_where_it_ends() {
-    let [_, end] = SCENE
-        .split_once("\n    window")
-        .map(|(_, end)| ["", end])
-        .unwrap();
+    let (_, end) = SCENE.split_once("\n    window").unwrap();
     let cut = format!("\n    window{end}");
     refused(&check(&cut, "", &[]), CUT);
 }

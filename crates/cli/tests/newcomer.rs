@@ -2,27 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, etendue};
+use crate::common::{SCENE, etendue, loud, told};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
-
-fn call(path: &Path, line: &str) -> Output {
-    let words = line.split_whitespace();
-    etendue().current_dir(path).args(words).output().unwrap()
-}
-
-/// Returns the standard output of a command that ends with an exit code.
-fn printed(path: &Path, line: &str, code: i32) -> String {
-    let output = call(path, line);
-    assert_eq!(output.status.code(), Some(code), "{line}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// Returns the JSON that is the whole standard output of a command.
-fn told(path: &Path, line: &str, code: i32) -> Value {
-    serde_json::from_str(&printed(path, line, code)).unwrap()
+fn tree(path: &Path, line: &str, code: i32) -> Value {
+    serde_json::from_str(&told(path, line, code)).unwrap()
 }
 
 #[test]
@@ -30,21 +17,21 @@ fn each_first_scene_is_sound() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     for name in ["blockers", "travel", "mirror", "glossy", "curved"] {
-        let said = printed(path, &format!("new {name}"), 0);
+        let said = told(path, &format!("new {name}"), 0);
         assert!(
             said.ends_with(&format!("next: etendue run {name}.ron\n")),
             "{said}"
         );
-        let said = printed(path, &format!("check {name}.ron"), 0);
+        let said = told(path, &format!("check {name}.ron"), 0);
         assert!(said.starts_with(&format!("{name}: sound")), "{said}");
     }
     // Without a name, the first scene; a scene of the user is not replaced.
     fs::write(path.join("blockers.ron"), "mine").unwrap();
-    assert_eq!(call(path, "new").status.code(), Some(3));
+    assert_eq!(loud(path, "new").status.code(), Some(3));
     assert_eq!(fs::read(path.join("blockers.ron")).unwrap(), b"mine");
-    printed(path, "new --out other.ron", 0);
-    printed(path, "check other.ron", 0);
-    assert_eq!(call(path, "new blocker").status.code(), Some(2));
+    told(path, "new --out other.ron", 0);
+    told(path, "check other.ron", 0);
+    assert_eq!(loud(path, "new blocker").status.code(), Some(2));
 }
 
 #[test]
@@ -53,18 +40,18 @@ fn results_are_printed_as_json() {
     let path = folder.path();
     fs::write(path.join("small.ron"), SCENE).unwrap();
     let run = "run small.ron --photons 2^16 --json";
-    let summary = told(path, &format!("{run} --out a"), 0);
+    let summary = tree(path, &format!("{run} --out a"), 0);
     let file = fs::read(path.join("a/summary.json")).unwrap();
     assert_eq!(
         summary,
         serde_json::from_slice::<Value>(&file).unwrap(),
         "run"
     );
-    let again = told(path, &format!("{run} --out a --resume"), 0);
+    let again = tree(path, &format!("{run} --out a --resume"), 0);
     assert_eq!(again, summary, "a finished run");
-    told(path, &format!("{run} --out b --seed 2"), 0);
+    tree(path, &format!("{run} --out b --seed 2"), 0);
     let planes = summary["planes"].as_array().unwrap();
-    let diff = told(path, "diff a b --json", 0);
+    let diff = tree(path, "diff a b --json", 0);
     assert_eq!(diff["verdict"], "pass");
     assert_eq!(diff["results"][1]["seed"], 2);
     assert_eq!(diff["scene"][0]["field"], "run.seed");
@@ -76,7 +63,7 @@ fn results_are_printed_as_json() {
         let measured = &plane["parameters"][0]["measured"];
         assert_eq!(*measured, first["measured"][0]["value"]);
     }
-    let check = told(path, "check small.ron --json --set run.photons=65536", 0);
+    let check = tree(path, "check small.ron --json --set run.photons=65536", 0);
     assert_eq!(check["scene_hash"], summary["scene_hash"]);
     assert_eq!(check["planes"][0]["class"], planes[0]["class"]);
     assert!(check["expected"]["seconds_of_photons"].as_f64() > Some(0.0));
@@ -88,13 +75,13 @@ fn characters_that_are_not_safe_are_escaped_in_json() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::write(path.join("small.ron"), SCENE).unwrap();
-    printed(path, "run small.ron --photons 2^16 --quiet --out a", 0);
+    told(path, "run small.ron --photons 2^16 --quiet --out a", 0);
     let name = "a\u{202e}b\u{e0001}";
     fs::rename(path.join("a"), path.join(name)).unwrap();
     let line = format!("diff {name} {name} --json");
-    let text = printed(path, &line, 0);
+    let text = told(path, &line, 0);
     assert!(text.contains(r"a\u202eb\udb40\udc01"), "{text}");
-    assert_eq!(told(path, &line, 0)["results"][0]["folder"], name);
+    assert_eq!(tree(path, &line, 0)["results"][0]["folder"], name);
 }
 
 /// U+202E would show the rest of a message in reverse. It is escaped in messages of the program and
@@ -113,12 +100,7 @@ fn characters_that_turn_text_around_are_escaped_in_messages() {
         "figure b\u{202e}c",
     ] {
         let folder = tempfile::tempdir().unwrap();
-        let arguments = line.split_whitespace();
-        let output = etendue()
-            .current_dir(folder.path())
-            .args(arguments)
-            .output()
-            .unwrap();
+        let output = loud(folder.path(), line);
         let message = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
         assert!(!message.contains('\u{202e}'), "{line:?}: {message:?}");
         let is_named = message.contains(r"\u{202e}") || line.contains("--set");
@@ -132,7 +114,7 @@ fn verdicts_are_coloured_where_the_user_wants_it() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::write(path.join("small.ron"), SCENE).unwrap();
-    printed(path, "run small.ron --photons 2^16 --quiet --out a", 0);
+    told(path, "run small.ron --photons 2^16 --quiet --out a", 0);
     let diff = |settings: &[(&str, &str)]| {
         let mut command = etendue();
         let command = command.current_dir(path).args(["diff", "a", "a"]);
@@ -158,13 +140,13 @@ fn shells_and_man_learn_the_command_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
-        let script = printed(path, &format!("completions {shell}"), 0);
+        let script = told(path, &format!("completions {shell}"), 0);
         assert!(script.contains("target-error"), "{shell}");
     }
-    let page = printed(path, "man", 0);
+    let page = told(path, "man", 0);
     assert!(page.contains(r"etendue\-probe(1)"), "{page}");
-    let page = printed(path, "man run", 0);
+    let page = told(path, "man run", 0);
     assert!(page.contains(".TH etendue-run 1"), "{page}");
     assert!(page.contains(r"\-\-target\-error"), "{page}");
-    assert_eq!(call(path, "man rnu").status.code(), Some(2));
+    assert_eq!(loud(path, "man rnu").status.code(), Some(2));
 }

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common;
-use crate::common::{call, etendue, files, json};
+use crate::common::{etendue, fails, files, json, loud, passes};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -34,20 +34,12 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The command succeeds.
-fn passes(folder: &Path, arguments: &str) {
-    let output = call(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
-}
-
 /// Checks that the command fails with a one-line message that contains `parts`, and that all
 /// files stay unchanged.
 fn stays(folder: &Path, arguments: &str, parts: &[&str]) {
     let before = files(folder);
     let start = Instant::now();
-    let output = call(folder, arguments);
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{arguments}: {message}");
+    let message = fails(folder, arguments, 3);
     for part in parts {
         assert!(message.contains(part), "{arguments}: {part}: {message}");
     }
@@ -79,9 +71,7 @@ fn inputs_are_never_among_results() {
     let before = files(folder.path());
     for force in ["", " --force"] {
         let arguments = format!("measure t.ron --out out{force} {ENDLESS}");
-        let output = call(folder.path(), &arguments);
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
+        let message = fails(folder.path(), &arguments, 2);
         assert!(message.contains("is read by this command"), "{message}");
         assert!(files(folder.path()) == before);
     }
@@ -120,11 +110,7 @@ fn files_of_somebody_else_stay() {
         &format!("run s.ron --out out {ENDLESS}"),
         &["path.png"],
     );
-    let output = etendue()
-        .current_dir(folder.path())
-        .args(["run", "s.ron", "--out", "out", "--force"])
-        .output()
-        .unwrap();
+    let output = loud(folder.path(), "run s.ron --out out --force");
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(told.contains("replaced in out: path.png\n"), "{told}");
     assert_eq!(fs::read(at("out/path.png")).unwrap(), picture);
@@ -142,25 +128,14 @@ fn links_and_folders_in_the_way_are_not_followed() {
     fs::create_dir_all(at("out")).unwrap();
     fs::write(at("elsewhere/kept.txt"), "mine").unwrap();
     symlink("../elsewhere", at("out/light")).unwrap();
-    stays(
-        folder.path(),
-        &format!("run s.ron --out out --force {ENDLESS}"),
-        &["out/light/"],
-    );
+    let run = format!("run s.ron --out out --force {ENDLESS}");
+    stays(folder.path(), &run, &["out/light/"]);
     fs::remove_file(at("out/light")).unwrap();
     symlink("../elsewhere/kept.txt", at("out/path.png")).unwrap();
-    stays(
-        folder.path(),
-        &format!("run s.ron --out out --force {ENDLESS}"),
-        &["path.png"],
-    );
+    stays(folder.path(), &run, &["path.png"]);
     fs::remove_file(at("out/path.png")).unwrap();
     fs::create_dir(at("out/path.png")).unwrap();
-    stays(
-        folder.path(),
-        &format!("run s.ron --out out --force {ENDLESS}"),
-        &["path.png"],
-    );
+    stays(folder.path(), &run, &["path.png"]);
     assert_eq!(files(&at("elsewhere")).len(), 1);
 }
 
@@ -192,16 +167,9 @@ fn single_files_replace_nothing_unless_told() {
     fs::create_dir(at("folder.png")).unwrap();
     fs::copy(at("s.ron"), at("s.png")).unwrap();
     let check = |arguments: &str| {
-        let output = etendue()
-            .current_dir(folder.path())
-            .arg("check")
-            .args(arguments.split_whitespace())
-            .output();
-        let output = output.unwrap();
-        (
-            output.status.code(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        let output = loud(folder.path(), &format!("check {arguments}"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), message)
     };
     let before = files(folder.path());
     for (arguments, code, part) in [
@@ -235,15 +203,7 @@ fn one_writer_at_a_time() {
     let before = files(&at("out"));
     let mut first = etendue()
         .current_dir(folder.path())
-        .args([
-            "run",
-            "s.ron",
-            "--quiet",
-            "--out",
-            "out",
-            "--photons",
-            "1e12",
-        ])
+        .args(format!("run s.ron --quiet --out out {ENDLESS}").split(' '))
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
@@ -253,11 +213,10 @@ fn one_writer_at_a_time() {
         std::thread::sleep(Duration::from_millis(5));
     }
     for command in ["run s.ron", "measure s.ron", "export --to mitsuba s.ron"] {
-        let output = call_without_quiet(folder.path(), &format!("{command} --out out"));
-        assert!(
-            output.contains("another etendue process is writing there"),
-            "{output}"
-        );
+        let output = loud(folder.path(), &format!("{command} --out out"));
+        assert_eq!(output.status.code(), Some(3), "{output:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains("another etendue process is writing there"));
     }
     // A killed run leaves unfinished files, which the next run removes; until then the earlier
     // result stays complete.
@@ -272,16 +231,6 @@ fn one_writer_at_a_time() {
             .keys()
             .any(|name| name.starts_with(".etendue"))
     );
-}
-
-fn call_without_quiet(folder: &Path, arguments: &str) -> String {
-    let output = etendue()
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(3), "{output:?}");
-    String::from_utf8(output.stderr).unwrap()
 }
 
 /// If a process dies at any step while it moves its files, the next process completes the moves.
@@ -348,9 +297,7 @@ fn a_failed_move_is_undone() {
         fs::write(place, bytes).unwrap();
     }
     fs::write(at("out/path.svg"), "mine").unwrap();
-    let output = call(folder.path(), "run s.ron --out out --seed 3");
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{message}");
+    let message = fails(folder.path(), "run s.ron --out out --seed 3", 3);
     assert!(
         message.contains("path.svg") && message.contains("--force"),
         "{message}"
@@ -361,11 +308,7 @@ fn a_failed_move_is_undone() {
     assert!(left.iter().all(|(name, bytes)| before[name] == *bytes));
     assert_eq!(left.len() + 1, before.len());
     // With `--force`, the command replaces the file and prints its name.
-    let output = etendue()
-        .current_dir(folder.path())
-        .args(["run", "s.ron", "--out", "out", "--seed", "3", "--force"])
-        .output()
-        .unwrap();
+    let output = loud(folder.path(), "run s.ron --out out --seed 3 --force");
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(told.contains("replaced in out: path.svg\n"), "{told}");
     assert!(!waiting.exists());
@@ -404,10 +347,7 @@ fn bad_input_leaves_no_folder_behind() {
         SCENE.replace("0.1)]", "NaN)]"),
     )
     .unwrap();
-    assert_eq!(
-        call(folder.path(), "run bad.ron --out out").status.code(),
-        Some(2)
-    );
+    fails(folder.path(), "run bad.ron --out out", 2);
     assert!(!folder.path().join("out").exists());
 }
 

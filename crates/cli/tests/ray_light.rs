@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{etendue, scene};
+use crate::common::{loud, scene};
 use etendue_compare::{Verdict, compare};
 use etendue_field::Light;
 use etendue_predict::{Applicability, predict, test_of};
@@ -246,14 +246,7 @@ fn what_makes_no_light_is_refused() {
 #[test]
 fn the_command_knows_what_it_can_judge() {
     let folder = folder();
-    let call = |arguments: &str| {
-        let words = arguments.split_whitespace();
-        etendue()
-            .current_dir(folder.path())
-            .args(words)
-            .output()
-            .unwrap()
-    };
+    let call = |arguments: &str| loud(folder.path(), arguments);
     let write = |name: &str, edits: &[(&str, &str)]| {
         fs::write(folder.path().join(name), text(edits)).unwrap();
     };
@@ -276,19 +269,16 @@ fn the_command_knows_what_it_can_judge() {
         ),
         ("run led.ron --method backward --out out", ""),
     ] {
-        let output = call(arguments);
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
+        let message = fails(arguments, 2);
         assert!(message.contains(part), "{arguments}: {message}");
     }
     let output = call("check led.ron");
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("do not go forward"), "{message}");
     for threads in 1..=2 {
-        let output = call(&format!(
+        passes(&format!(
             "run led.ron --photons 20000 --set run.resolution=1 --threads {threads} --out out{threads} --save mcpl"
         ));
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
     }
     let of = |out: &str| fs::read(folder.path().join(out).join("arrival/photons.mcpl")).unwrap();
     assert!(of("out1") == of("out2"));

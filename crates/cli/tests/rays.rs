@@ -2,8 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common;
-use crate::common::{SCENE, call};
+use crate::common::{SCENE, call, loud, told};
 use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use std::f64::consts::PI;
 use std::fs;
@@ -30,16 +29,6 @@ fn folder() -> TempDir {
     folder
 }
 
-fn said(folder: &Path, arguments: &str) -> String {
-    let output = common::etendue()
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 fn read(path: &Path) -> RaySet {
     RayFile::read(&fs::read(path).unwrap()).unwrap().rays()
 }
@@ -47,7 +36,7 @@ fn read(path: &Path) -> RaySet {
 #[test]
 fn a_file_is_described_and_converted() {
     let folder = folder();
-    let text = said(folder.path(), "rays two.tm25ray");
+    let text = told(folder.path(), "rays two.tm25ray", 0);
     for part in [
         "IES TM-25, version 2013",
         "0.75 W",
@@ -57,14 +46,14 @@ fn a_file_is_described_and_converted() {
         assert!(text.contains(part), "{part} not in: {text}");
     }
     for other in ["two.mcpl", "two.mcpl.gz", "two.npy", "again.tm25ray"] {
-        said(folder.path(), &format!("rays two.tm25ray --out {other}"));
+        told(folder.path(), &format!("rays two.tm25ray --out {other}"), 0);
         let set = read(&folder.path().join(other));
         assert_eq!(set.powers, [0.5, 0.25], "{other}");
     }
     let same =
         ["two.tm25ray", "again.tm25ray"].map(|name| fs::read(folder.path().join(name)).unwrap());
     assert!(same[0] == same[1]);
-    let text = said(folder.path(), "rays two.npy --out two.tm25ray --force");
+    let text = told(folder.path(), "rays two.npy --out two.tm25ray --force", 0);
     assert!(
         text.contains("note: weights, whose unit is not stated"),
         "{text}"
@@ -74,47 +63,29 @@ fn a_file_is_described_and_converted() {
 #[test]
 fn files_that_are_none_are_refused() {
     let folder = folder();
-    refused_rays(
-        &folder,
-        "rays half.tm25ray",
-        2,
-        "cannot read half.tm25ray: byte 36288: 2 rays of 28 bytes",
-    );
-    refused_rays(&folder, "rays missing.mcpl", 2, "cannot read missing.mcpl");
-    refused_rays(
-        &folder,
-        "rays two.tm25ray --out two.txt",
-        2,
-        ".tm25ray, .mcpl, .mcpl.gz, .npy",
-    );
-    refused_rays(
-        &folder,
-        "rays two.tm25ray --out half.tm25ray",
-        3,
-        "--force replaces it",
-    );
-    refused_rays(
-        &folder,
-        "rays two.tm25ray --out two.tm25ray --force",
-        2,
-        "read by this command",
-    );
-    refused_rays(&folder, "rays half.tm25ray --out new.mcpl", 2, "byte 36288");
+    let cut = "cannot read half.tm25ray: byte 36288: 2 rays of 28 bytes";
+    for (arguments, code, part) in [
+        ("half.tm25ray", 2, cut),
+        ("missing.mcpl", 2, "cannot read missing.mcpl"),
+        (
+            "two.tm25ray --out two.txt",
+            2,
+            ".tm25ray, .mcpl, .mcpl.gz, .npy",
+        ),
+        ("two.tm25ray --out half.tm25ray", 3, "--force replaces it"),
+        (
+            "two.tm25ray --out two.tm25ray --force",
+            2,
+            "read by this command",
+        ),
+        ("half.tm25ray --out new.mcpl", 2, "byte 36288"),
+    ] {
+        let output = loud(folder.path(), &format!("rays {arguments}"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{arguments}: {message}");
+        assert!(message.contains(part), "{arguments}: {message}");
+    }
     assert!(!folder.path().join("new.mcpl").exists());
-}
-
-fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
-    let output = common::etendue()
-        .current_dir(folder.path())
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{arguments}: {message}");
-    assert!(
-        message.contains(part),
-        "{arguments}: {part} not in: {message}"
-    );
 }
 
 /// A light of radiance 1 emits a flux of π times its area. The received flux is the emitted flux

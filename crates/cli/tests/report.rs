@@ -2,8 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common;
-use crate::common::{SCENE, call, json};
+use crate::common::{SCENE, call, json, loud, passes, sealed, told};
 use std::fs;
 use std::path::Path;
 
@@ -22,8 +21,7 @@ fn runs() -> tempfile::TempDir {
         "run small.ron --photons 4096 --out a",
         "run a<b>&.ron --photons 4096 --out b --set blockers.0.pitch=0.15",
     ] {
-        let output = call(path, arguments);
-        assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
+        passes(path, arguments);
     }
     folder
 }
@@ -67,8 +65,7 @@ fn a_page_holds_what_its_run_found() {
 fn runs_stand_side_by_side() {
     let folder = runs();
     let path = folder.path();
-    let output = call_report(path, "report a b --out both.html");
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    told(path, "report a b --out both.html", 0);
     let runs = data(&path.join("both.html"));
     let alone: Vec<_> = ["a", "b"]
         .map(|name| data(&path.join(name).join("report.html")))
@@ -112,8 +109,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
         assert_eq!(summary["files"]["explorer.html"].is_string(), is_known);
         assert_eq!(path.join(name).join("explorer.html").exists(), is_known);
     }
-    let output = call_report(path, "report known other --out both.html");
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    told(path, "report known other --out both.html", 0);
     let page = path.join("both.html");
     let [known, other] = &data(&page)[..] else {
         panic!("two runs")
@@ -131,35 +127,21 @@ fn a_scene_that_the_explorer_knows_leads_there() {
 fn what_is_no_whole_result_is_refused() {
     let folder = runs();
     let path = folder.path();
-    let output = call_report(path, "report a absent --out out");
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("absent: no such folder")
-    );
+    let refused = |line: &str, code: i32, part: &str| {
+        let output = loud(path, line);
+        assert_eq!(output.status.code(), Some(code), "{output:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(part), "{line}: {message}");
+    };
+    refused("report a absent --out out", 2, "absent: no such folder");
     let page = path.join("b/report.html");
     let changed = fs::read_to_string(&page).unwrap().replace("4096", "4097");
     fs::write(page, changed).unwrap();
-    let output = call_report(path, "report b --out out");
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("damaged")
-    );
+    refused("report b --out out", 2, "damaged");
     assert!(!path.join("out").exists());
     // If a file is a page of another result or an input, it is not replaced.
-    assert_eq!(
-        call_report(path, "report a --out small.ron").status.code(),
-        Some(3)
-    );
-    assert_eq!(
-        call_report(path, "report a --out a/report.html --force")
-            .status
-            .code(),
-        Some(2)
-    );
+    refused("report a --out small.ron", 3, "");
+    refused("report a --out a/report.html --force", 2, "");
 }
 
 /// If a page was changed and its index matches, it still cannot inject markup into a page of
@@ -175,21 +157,12 @@ fn pages_are_made_from_data() {
         let forged = original.replacen(from, to, 1);
         fs::write(&page, &forged).unwrap();
         let index = path.join("b/summary.json");
-        let mut text = fs::read_to_string(&index).unwrap();
-        let hash = json(&index)["files"]["report.html"]
-            .as_str()
-            .unwrap()
-            .to_owned();
-        text = text.replace(&hash, blake3::hash(forged.as_bytes()).to_hex().as_str());
-        let body = text[..text.rfind(",\n  \"index_hash\"").unwrap()].to_owned();
-        let hash = blake3::hash(body.as_bytes()).to_hex();
-        fs::write(
-            &index,
-            format!("{body},\n  \"index_hash\": \"{hash}\"\n}}\n"),
-        )
-        .unwrap();
+        let mut tree = json(&index);
+        let hash = blake3::hash(forged.as_bytes()).to_hex();
+        tree["files"]["report.html"] = hash.as_str().into();
+        fs::write(&index, sealed(tree)).unwrap();
         fs::remove_file(path.join("both.html")).unwrap_or_default();
-        call_report(path, "report a b --out both.html")
+        loud(path, "report a b --out both.html")
     };
     const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
     let data = "class=\"run-data\">";
@@ -212,15 +185,6 @@ fn pages_are_made_from_data() {
     assert!(words.as_str().unwrap().starts_with(MARKUP));
 }
 
-fn call_report(path: &Path, arguments: &str) -> std::process::Output {
-    let mut command = common::etendue();
-    command
-        .current_dir(path)
-        .args(arguments.split(' '))
-        .output()
-        .unwrap()
-}
-
 /// The page leads to folders beside it by relative paths, in which no name is an address.
 #[test]
 fn a_page_leads_to_other_folders_by_relative_paths() {
@@ -232,9 +196,7 @@ fn a_page_leads_to_other_folders_by_relative_paths() {
         ("all.html", "javascript:alert(1)/"),
         ("pages/all.html", "../javascript:alert(1)/"),
     ] {
-        let line = format!("report javascript:alert(1) --out {out}");
-        let output = call_report(path, &line);
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        told(path, format!("report javascript:alert(1) --out {out}"), 0);
         let page = fs::read_to_string(path.join(out)).unwrap();
         let attribute = format!("data-folder=\"{address}\"");
         assert!(page.contains(&attribute), "{out}: {attribute}");

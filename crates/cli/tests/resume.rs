@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, etendue, files, json};
+use crate::common::{SCENE, call, etendue, files, json, passes};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
@@ -15,8 +15,7 @@ const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
-    let output = call(folder.path(), &format!("{RUN} --out whole"));
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(folder.path(), &format!("{RUN} --out whole"));
     folder
 }
 
@@ -87,8 +86,7 @@ fn a_run_goes_on_where_its_time_was_up() {
     assert!(ended > 0, "the time was never up");
     is_whole(path, "parts");
     // A finished run prints its result again and does not change it.
-    let again = call(path, &format!("{RUN} --out parts --resume"));
-    assert_eq!(again.status.code(), Some(0));
+    passes(path, &format!("{RUN} --out parts --resume"));
     is_whole(path, "parts");
 }
 
@@ -147,8 +145,7 @@ fn batches_of_another_run_are_not_taken() {
     let other = format!("{RUN} --out parts --resume --time 100ms --seed 9");
     let ended = call(path, &other).status.code();
     assert!(matches!(ended, Some(0 | 3)), "{ended:?}");
-    let output = call(path, &format!("{RUN} --out parts --resume"));
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(path, &format!("{RUN} --out parts --resume"));
     let seed = json(&path.join("parts/summary.json"))["seed"].clone();
     assert_eq!(seed, json(&path.join("whole/summary.json"))["seed"]);
     if ended == Some(3) {
@@ -281,19 +278,9 @@ fn batches_of_a_run_that_is_done_are_removed() {
     } else {
         panic!("the time was not up: {output:?}");
     }
-    assert_eq!(
-        call(path, &format!("{RUN} --out parts --resume"))
-            .status
-            .code(),
-        Some(0)
-    );
+    passes(path, &format!("{RUN} --out parts --resume"));
     fs::rename(path.join("batches"), path.join("parts/batches")).unwrap();
-    assert_eq!(
-        call(path, &format!("{RUN} --out parts --resume"))
-            .status
-            .code(),
-        Some(0)
-    );
+    passes(path, &format!("{RUN} --out parts --resume"));
     is_whole(path, "parts");
 }
 
@@ -314,8 +301,7 @@ fn batches_go_through_no_link() {
         } else {
             "--seed 3"
         };
-        let output = call(path, &format!("{RUN} --out {out} {resume}"));
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        passes(path, &format!("{RUN} --out {out} {resume}"));
         let left = files(&path.join("elsewhere"));
         assert_eq!(left.keys().collect::<Vec<_>>(), ["mine/file"]);
     }

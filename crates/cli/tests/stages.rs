@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, array, call, files, json, refused, stages};
+use crate::common::{SCENE, array, call, fails, files, json, passes, refused, stages};
 use etendue_field::Complex;
 use ndarray::{Array0, Array1, Array2, Array3, Array4};
 use std::fs;
@@ -33,10 +33,9 @@ fn one_folder_may_hold_all_stages() {
     let folder = stages.path();
     call(folder, "measure small.ron --out p");
     let compare = "compare --measured p --predicted p --out p";
-    assert_eq!(call(folder, compare).status.code(), Some(0));
+    passes(folder, compare);
     let first = files(&folder.join("p"));
-    let again = call(folder, &format!("{compare} --expect disagreement"));
-    assert_eq!(again.status.code(), Some(1), "{again:?}");
+    fails(folder, &format!("{compare} --expect disagreement"), 1);
     assert!(first.keys().eq(files(&folder.join("p")).keys()));
 }
 
@@ -47,11 +46,10 @@ fn part_of_a_measurement_is_reported_as_what_it_is() {
     // A prediction does not depend on the settings of the measurement.
     let predict = "predict small.ron --set run.photons=1000 --set run.seed=3 --out other";
     call(folder, predict);
-    let output = call(
+    passes(
         folder,
         "compare --measured b --predicted other --out out --threads 1",
     );
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
     let summary = json(&folder.join("out/summary.json"));
     let held = json(&folder.join("b/measurement.json"));
     assert_eq!(summary["batches"], 44);
@@ -113,8 +111,7 @@ fn what_does_not_fit_together_is_refused() {
         ),
         ("name", "same.ron --batches 20..64"),
     ] {
-        let output = call(folder, &format!("measure {how} --out {out}"));
-        assert_eq!(output.status.code(), Some(0), "{out}: {output:?}");
+        passes(folder, &format!("measure {how} --out {out}"));
     }
     call(
         folder,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, files, json, refused};
+use crate::common::{SCENE, call, fails, files, json, passes, refused};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -26,8 +26,7 @@ fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
 fn the_table_has_what_a_run_says_of_each_point() {
     let folder = folder();
     let path = folder.path();
-    let output = call(path, PITCH);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(path, PITCH);
     let rows = rows(&path.join("s/sweep.csv"));
     let seed = |pitch: &str| -> u64 {
         let row = rows.iter().find(|row| row["blockers.0.pitch"] == pitch);
@@ -37,7 +36,7 @@ fn the_table_has_what_a_run_says_of_each_point() {
         "run small.ron --photons 4096 --out r --set blockers.0.pitch=0.15 --seed {}",
         seed("0.15")
     );
-    assert_eq!(call(path, &run).status.code(), Some(0));
+    passes(path, &run);
     let summary = json(&path.join("r/summary.json"));
     for plane in summary["planes"].as_array().unwrap() {
         let mut at = rows.iter().filter(|row| {
@@ -68,7 +67,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     let path = folder.path();
     let seeds = |arguments: &str| -> BTreeSet<String> {
         let line = PITCH.replace("--out s", &format!("--out s --force {arguments}"));
-        assert_eq!(call(path, &line).status.code(), Some(0), "{line}");
+        passes(path, &line);
         let rows = rows(&path.join("s/sweep.csv"));
         rows.iter().map(|row| row["seed"].clone()).collect()
     };
@@ -82,7 +81,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
     // If the seed is swept, the values of the sweep are the seeds of the points.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
-    assert_eq!(call(path, line).status.code(), Some(0));
+    passes(path, line);
     let seeds: BTreeSet<String> = rows(&path.join("t/sweep.csv"))
         .iter()
         .map(|row| row["seed"].clone())
@@ -96,7 +95,7 @@ fn points_go_through_no_link() {
     for name in ["s/points", "s/points/POINT"] {
         let folder = folder();
         let path = folder.path();
-        assert_eq!(call(path, PITCH).status.code(), Some(0));
+        passes(path, PITCH);
         let point = json(&path.join("s/sweep.json"))["points"][0]
             .as_str()
             .unwrap()
@@ -105,9 +104,7 @@ fn points_go_through_no_link() {
         fs::remove_dir_all(&linked).unwrap();
         fs::create_dir(path.join("elsewhere")).unwrap();
         std::os::unix::fs::symlink(path.join("elsewhere"), &linked).unwrap();
-        let output = call(path, PITCH);
-        assert_eq!(output.status.code(), Some(3), "{output:?}");
-        let message = String::from_utf8(output.stderr).unwrap();
+        let message = fails(path, PITCH, 3);
         assert!(
             message.contains("a link or a file is in the place of"),
             "{message}"
@@ -120,7 +117,7 @@ fn points_go_through_no_link() {
 fn a_sweep_goes_on_from_what_is_there() {
     let folder = folder();
     let path = folder.path();
-    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    passes(path, PITCH);
     let whole = files(&path.join("s"));
     let points = json(&path.join("s/sweep.json"))["points"].clone();
     let summary = |i: usize| {
@@ -133,19 +130,14 @@ fn a_sweep_goes_on_from_what_is_there() {
     // One summary was removed, and another summary was changed by hand.
     fs::remove_file(summary(2)).unwrap();
     fs::write(summary(3), "{}").unwrap();
-    let refused = call(path, PITCH);
-    assert_eq!(
-        refused.status.code(),
-        Some(3),
-        "not etendue's file is not replaced"
-    );
+    fails(path, PITCH, 3);
     fs::remove_file(summary(3)).unwrap();
-    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    passes(path, PITCH);
     assert_eq!([0, 1].map(made), before[..2], "not run again");
     assert!(files(&path.join("s")) == whole, "the same bytes");
     // If values are added to a sweep, only the new points are run.
     let more = PITCH.replace(":4", ":7");
-    assert_eq!(call(path, &more).status.code(), Some(0));
+    passes(path, &more);
     assert_eq!([0, 1].map(made), before[..2]);
     assert_eq!(fs::read_dir(path.join("s/points")).unwrap().count(), 7);
 }
@@ -155,16 +147,8 @@ fn a_grid_and_fields_in_step() {
     let folder = folder();
     let path = folder.path();
     let both = "sweep small.ron --photons 4096 --set blockers.0.pitch=0.1,0.2 --set blockers.0.fill=0.3..0.6:2";
-    assert_eq!(
-        call(path, &format!("{both} --out grid")).status.code(),
-        Some(0)
-    );
-    assert_eq!(
-        call(path, &format!("{both} --together --out step"))
-            .status
-            .code(),
-        Some(0)
-    );
+    passes(path, &format!("{both} --out grid"));
+    passes(path, &format!("{both} --together --out step"));
     let points = |name: &str| json(&path.join(name))["points"].as_array().unwrap().clone();
     let (grid, step) = (points("grid/sweep.json"), points("step/sweep.json"));
     assert_eq!(grid.len(), 4);
@@ -205,9 +189,7 @@ fn bad_sweeps_are_refused() {
     ] {
         refused(path, &arguments, parts);
     }
-    let output = call(path, &format!("{set} blockers.0.fill=0.1..0.9"));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{message}");
+    let message = fails(path, &format!("{set} blockers.0.fill=0.1..0.9"), 2);
     assert!(message.contains("PATH=A..B:N"), "{message}");
     for (twice, field) in [
         (
@@ -223,13 +205,11 @@ fn bad_sweeps_are_refused() {
             "pitch=0.05-0.4:3 is one value",
         ),
     ] {
-        let output = call(path, &format!("{set} {twice}"));
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
+        let message = fails(path, &format!("{set} {twice}"), 2);
         assert!(message.contains(field), "{message}");
     }
     // A sweep of another scene, or of other fields, does not replace this sweep.
-    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    passes(path, PITCH);
     let other = format!("{PITCH} --set blockers.0.fill=0.3");
     let output = call(path, &other);
     assert_eq!(output.status.code(), Some(3), "{output:?}");
@@ -239,15 +219,10 @@ fn bad_sweeps_are_refused() {
             .contains("in which blockers[0].fill is")
     );
     let fields = "sweep small.ron --photons 4096 --out s --set blockers.0.fill=0.3,0.5";
-    let output = call(path, fields);
-    assert_eq!(output.status.code(), Some(3), "{output:?}");
-    let message = String::from_utf8(output.stderr).unwrap();
+    let message = fails(path, fields, 3);
     assert!(
         message.contains("holds a sweep of blockers.0.pitch"),
         "{message}"
     );
-    assert_eq!(
-        call(path, &format!("{other} --force")).status.code(),
-        Some(0)
-    );
+    passes(path, &format!("{other} --force"));
 }

@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{call, etendue, files, json, refused, scene};
+use crate::common::{fails, files, json, passes, refused, scene, told};
 use ndarray::{Array2, array};
 use ndarray_npy::WriteNpyExt;
 use serde_json::Value;
 use std::fs::{self, File};
 use std::path::Path;
-use std::process::Output;
 
 fn number(tree: &Value, name: &str) -> f64 {
     tree[name].as_f64().unwrap()
@@ -26,12 +25,6 @@ fn lattice(count: usize) -> Array2<f64> {
     Array2::from_shape_fn((count, 4), at)
 }
 
-/// Runs a command that prints its tables.
-fn told(folder: &Path, line: &str) -> Output {
-    let words = line.split(' ');
-    etendue().current_dir(folder).args(words).output().unwrap()
-}
-
 #[test]
 fn predicted_errors_are_found() {
     let folder = tempfile::tempdir().unwrap();
@@ -42,10 +35,8 @@ fn predicted_errors_are_found() {
         "variance {} --photons 2^18 --counts 16,64,256 --unshifted --samplers independent,jitter,lhs,sobol,padded,lattice.npy,long.npy --out out",
         soft.display()
     );
-    let output = told(folder.path(), &line);
     // The prediction for one of the files is undecided.
-    assert_eq!(output.status.code(), Some(4), "{output:?}");
-    let said = String::from_utf8(output.stdout).unwrap();
+    let said = told(folder.path(), line, 4);
     let long: Vec<&str> = said
         .lines()
         .filter(|line| line.chars().count() > 100)
@@ -108,7 +99,7 @@ fn pictures_show_all_answers() {
             "variance {} --photons 2^16 --counts {counts} --unshifted --shifts 20 --frequencies 4 --out out",
             soft.display()
         );
-        assert_eq!(call(folder.path(), &line).status.code(), Some(0));
+        passes(folder.path(), &line);
         let csv = fs::read_to_string(folder.path().join("out/variance.csv")).unwrap();
         for name in names {
             assert!(csv.contains(name), "{name}: {csv}");
@@ -134,8 +125,7 @@ fn variances_have_the_same_bytes_on_any_threads() {
             "variance {} --plane leaving --photons 20000 --counts 4..16 --shifts 20 --unshifted --frequencies 4 --threads {threads} --out v{threads}",
             spot.display()
         );
-        let output = call(folder.path(), &line);
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let output = passes(folder.path(), &line);
         assert!(output.stdout.is_empty() && output.stderr.is_empty());
     }
     let of = |name: &str| files(&folder.path().join(name));
@@ -153,8 +143,7 @@ fn an_unknown_tail_is_reported() {
             "variance {} --photons {photons} --counts 4 --shifts 20 --samplers sobol --out v{photons}",
             soft.display()
         );
-        let output = told(folder.path(), &line);
-        let said = String::from_utf8(output.stdout).unwrap();
+        let said = told(folder.path(), line, 0);
         assert_eq!(said.contains("use more photons"), !is_known, "{said}");
         let index = json(&folder.path().join(format!("v{photons}/variance.json")));
         assert_eq!(index["has_last_octave"], is_known);
@@ -211,9 +200,7 @@ fn bad_arguments_are_refused() {
         ("--frequencies 40", "from 2 to 16"),
         ("--shifts 1", "from 10 to 1000000"),
     ] {
-        let output = call(path, &format!("variance {spot} {plane} {arguments}"));
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
+        let message = fails(path, &format!("variance {spot} {plane} {arguments}"), 2);
         assert!(message.contains(part), "{arguments}: {message}");
     }
     refused(

@@ -3,8 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common;
-use crate::common::{SCENE, array, call, files, json, refused, scene};
+use crate::common::{SCENE, array, call, fails, files, json, passes, refused, scene, told};
 use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
@@ -35,11 +34,10 @@ const TETRA: &str =
 #[test]
 fn backward_rays_agree_and_keep_no_ledger() {
     let folder = folder(&[]);
-    let output = call(
+    passes(
         folder.path(),
         "run small.ron --method backward --photons 100000 --out out",
     );
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
     let summary = json(&folder.path().join("out/summary.json"));
     assert_eq!(summary["method"], "backward");
     assert!(summary["ledger"].is_null());
@@ -53,8 +51,7 @@ fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
     let beyond = ("at: Emission", "at: Distance(0.5)");
     let found = folder(&[(LIGHT, POINT), beyond]);
     let run = "run small.ron --method backward --photons 100000 --out out";
-    let output = call(found.path(), run);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(found.path(), run);
     let at_light = folder(&[(LIGHT, POINT)]);
     refused(at_light.path(), run, &["the plane lies at a point light"]);
     let mirror = scene("wild/ball_beyond_its_patch.ron");
@@ -77,13 +74,11 @@ fn a_mesh_goes_through_all_stages() {
         "measure small.ron --photons 60000 --out m",
         "predict small.ron --photons 60000 --out p",
     ] {
-        let output = call(path, arguments);
-        assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
+        passes(path, arguments);
     }
     // The files of the stages contain all inputs, so the original meshes are not needed.
     fs::remove_dir_all(path.join("meshes")).unwrap();
-    let output = call(path, "compare --measured m --predicted p --out compared");
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(path, "compare --measured m --predicted p --out compared");
     let [run, compared] = ["run", "compared"].map(|result| {
         let mut files = files(&path.join(result));
         assert!(files.remove("timing.json").is_some());
@@ -105,17 +100,12 @@ fn a_mesh_goes_through_all_stages() {
 fn the_light_field_is_written_on_its_grid() {
     let folder = folder(&[]);
     let path = folder.path();
-    let output = call(
+    fails(
         path,
         "run small.ron --save field --out out --set window.y=0.5",
+        2,
     );
-    assert_eq!(
-        output.status.code(),
-        Some(2),
-        "a window is a profile: {output:?}"
-    );
-    let output = call(path, "run small.ron --save field --out out");
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    passes(path, "run small.ron --save field --out out");
     let plane = path.join("out/receiver");
     let field: Array4<f64> =
         Array4::read_npy(File::open(plane.join("field.npy")).unwrap()).unwrap();
@@ -146,9 +136,7 @@ fn the_light_field_is_written_on_its_grid() {
 #[test]
 fn a_grid_beyond_memory_is_refused_before_work() {
     let folder = folder(&[("rho: (max: 6)", "rho: (max: 4000)")]);
-    let output = call(folder.path(), "run small.ron --save field --out out");
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(3), "{message}");
+    let message = fails(folder.path(), "run small.ron --save field --out out", 3);
     assert!(
         message.contains("GB") && message.contains("cells"),
         "{message}"
@@ -159,21 +147,11 @@ fn a_grid_beyond_memory_is_refused_before_work() {
 #[test]
 fn scenes_are_exported_or_refused() {
     let scene = folder(&[]);
-    let output = common::etendue()
-        .current_dir(scene.path())
-        .args(["export", "--to", "mitsuba", "small.ron", "--out", "mi"])
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    told(scene.path(), "export --to mitsuba small.ron --out mi", 0);
     let written = files(&scene.path().join("mi"));
     assert!(written.contains_key("scene.xml") && written.contains_key("planes.json"));
     let spot = "Spot(center: (0.1, 0.2, 0.30000000000000004), bulb: Square(0.1), exponent: 3)";
     let scene = folder(&[(LIGHT, spot)]);
-    let output = common::etendue()
-        .current_dir(scene.path())
-        .args(["export", "--to", "mitsuba", "small.ron", "--out", "out"])
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    told(scene.path(), "export --to mitsuba small.ron --out out", 2);
     assert!(!scene.path().join("out").exists());
 }

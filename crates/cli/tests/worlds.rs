@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{etendue, files, json};
+use crate::common::{files, json, loud, told};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 const ROOM: &str = r#"<scene version="3.0.0">
   <sensor type="perspective" id="front">
@@ -44,25 +44,9 @@ fn room() -> tempfile::TempDir {
     folder("ball", "ball")
 }
 
-fn call(path: &Path, line: &str) -> Output {
-    let arguments = line.split_whitespace();
-    etendue()
-        .current_dir(path)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-/// Returns the output of a command, and checks that the command succeeds.
-fn done(path: &Path, line: &str) -> String {
-    let output = call(path, line);
-    assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 /// Returns the error message of a command, and checks that the command refuses its input.
 fn refused(path: &Path, line: &str) -> String {
-    let output = call(path, line);
+    let output = loud(path, line);
     assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");
     String::from_utf8(output.stderr).unwrap()
 }
@@ -70,7 +54,7 @@ fn refused(path: &Path, line: &str) -> String {
 #[test]
 fn import_says_what_there_is_and_what_is_left_out() {
     let folder = folder("<rfilter type=\"box\"/>", "<rfilter type=\"gaussian\"/>");
-    let said = done(folder.path(), "import room.xml");
+    let said = told(folder.path(), "import room.xml", 0);
     for part in [
         "spheres",
         "point lights",
@@ -85,10 +69,11 @@ fn import_says_what_there_is_and_what_is_left_out() {
 fn results_keep_what_was_left_out() {
     let folder = folder("<rfilter type=\"box\"/>", "<rfilter type=\"gaussian\"/>");
     let path = folder.path();
-    done(path, "render room.xml --samples 2 --quiet --out picture");
-    let said = done(
+    told(path, "render room.xml --samples 2 --quiet --out picture", 0);
+    let said = told(
         path,
         "probe room.xml --map 1x1 --rays 2^8 --json --out probe",
+        0,
     );
     let said: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert_eq!(said, json(&path.join("probe/probe.json")));
@@ -140,18 +125,20 @@ fn pictures_and_probes_have_the_same_bytes_on_any_threads() {
     let folder = room();
     let path = folder.path();
     for threads in [1, 2] {
-        done(
+        told(
             path,
             &format!("render room.xml --samples 4 --threads {threads} --out r{threads}"),
+            0,
         );
         let probe = "probe room.xml --pixel 12,8 --rays 2^12 --photons 2^13 --quiet";
-        call(
+        loud(
             path,
             &format!("{probe} --threads {threads} --out p{threads}"),
         );
-        done(
+        told(
             path,
             &format!("probe room.xml --map 3x2 --rays 2^10 --threads {threads} --out m{threads}"),
+            0,
         );
     }
     for name in ["r", "p", "m"] {
@@ -166,7 +153,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     let folder = room();
     let path = folder.path();
     let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^14 --photons 2^20 --out p";
-    let output = call(path, line);
+    let output = loud(path, line);
     // One probe in a hundred fails by chance, but the result for this seed never changes.
     assert!(matches!(output.status.code(), Some(0 | 4)), "{output:?}");
     let found = json(&path.join("p/probe.json"));
@@ -247,7 +234,7 @@ fn a_probe_finds_variation_above_its_highest_frequency() {
         );
         fs::write(path.join("floor.xml"), text).unwrap();
         let line = "probe floor.xml --pixel 130,120 --rays 2^17 --photons 2^10 --out p";
-        let said = String::from_utf8(call(path, line).stdout).unwrap();
+        let said = String::from_utf8(loud(path, line).stdout).unwrap();
         let picture = &json(&path.join("p/probe.json"))["picture"];
         let found = picture["missed"]["share"].as_f64();
         match share {
@@ -272,12 +259,16 @@ fn a_probe_finds_variation_above_its_highest_frequency() {
     for seed in 1..4 {
         let line =
             format!("probe even.xml --pixel 8,8 --seed {seed} --rays 2^15 --photons 2^10 --out e");
-        let said = String::from_utf8(call(folder.path(), &line).stdout).unwrap();
+        let said = String::from_utf8(loud(folder.path(), &line).stdout).unwrap();
         assert!(said.contains("the picture is even"), "{seed}: {said}");
     }
     // Too few rays are not taken for a smooth or a fine picture.
     let folder = room();
-    let said = done(folder.path(), "probe room.xml --map 2x2 --rays 2^6 --out m");
+    let said = told(
+        folder.path(),
+        "probe room.xml --map 2x2 --rays 2^6 --out m",
+        0,
+    );
     assert!(said.contains("noise hides the bandwidth of"), "{said}");
 }
 
@@ -288,7 +279,7 @@ fn a_probe_predicts_the_errors_of_samplers() {
     let path = folder.path();
     let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^17 --photons 2^12 \
         --variance=sobol,jitter --out p";
-    call(path, line);
+    loud(path, line);
     let found = json(&path.join("p/probe.json"));
     let mut compared = 0;
     for plane in found["planes"].as_array().unwrap() {
@@ -349,7 +340,11 @@ fn what_is_asked_must_be_there() {
     let view = "--look-from 0.3,0.3,2 --look-at 0.3,0.3,0 --size 4x4 --samples 2";
     let message = refused(path, &format!("render plane.obj {view}"));
     assert!(message.contains("--sky"), "{message}");
-    done(path, &format!("render plane.obj {view} --sky 1 --out sky"));
+    told(
+        path,
+        &format!("render plane.obj {view} --sky 1 --out sky"),
+        0,
+    );
 }
 
 /// Returns a square of 2 n² triangles, as a binary PLY file.

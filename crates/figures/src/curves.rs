@@ -84,6 +84,19 @@ pub struct CurvePanel {
     pub is_log: [bool; 2],
 }
 
+impl CurvePanel {
+    /// Returns a panel whose axes are not logarithmic.
+    #[must_use]
+    pub fn new(title: &str, x: AxisQuantity, curves: Vec<Curve>) -> Self {
+        Self {
+            title: title.to_owned(),
+            x,
+            curves,
+            is_log: [false; 2],
+        }
+    }
+}
+
 /// Panels of curves that show one quantity. Each panel has its own scales. They include y = 0,
 /// except if y is logarithmic or all values are far from 0.
 #[derive(Clone, Debug, PartialEq)]

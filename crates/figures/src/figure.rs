@@ -170,7 +170,10 @@ pub(crate) fn options() -> usvg::Options<'static> {
 }
 
 /// Returns the CSV text of a header and of rows of the same length.
-pub(crate) fn csv_text(
+///
+/// # Errors
+/// If a row has another length.
+pub fn csv_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
 ) -> Result<String, Error> {
@@ -180,9 +183,8 @@ pub(crate) fn csv_text(
     for row in rows {
         writer.write_record(row).map_err(fault)?;
     }
-    let bytes = writer
-        .into_inner()
-        .map_err(|error| Error::Csv(error.to_string()))?;
+    let bytes = writer.into_inner();
+    let bytes = bytes.map_err(|error| Error::Csv(error.to_string()))?;
     String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
 }
 

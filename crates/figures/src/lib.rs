@@ -75,7 +75,7 @@ pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use ellipses::{Ellipse, Ellipses, ellipses};
-pub use figure::{DrawnPicture, Error, Figure, stacked};
+pub use figure::{DrawnPicture, Error, Figure, csv_text, stacked};
 pub use grid::{Guide, Picture, PlateRow};
 pub use image::photograph;
 pub use plate::{Bars, Plate, plate};

@@ -90,20 +90,13 @@ fn panel(
         .iter()
         .map(|value| counted(taken, text, sweep, *value));
     let line = |i: usize| lines.iter().map(|both| both[i]).collect();
-    Ok(CurvePanel {
-        title: sweep.title.to_owned(),
-        x: sweep.quantity.clone(),
-        curves: vec![
-            Curve::new(CurveKind::Rival, "as printed", line(1)),
-            Curve::new(CurveKind::Theory, "corrected", line(0)),
-            Curve::new(
-                CurveKind::Measured,
-                "photons",
-                points.collect::<Result<_, _>>()?,
-            ),
-        ],
-        is_log: [false; 2],
-    })
+    let points = points.collect::<Result<_, _>>()?;
+    let curves = vec![
+        Curve::new(CurveKind::Rival, "as printed", line(1)),
+        Curve::new(CurveKind::Theory, "corrected", line(0)),
+        Curve::new(CurveKind::Measured, "photons", points),
+    ];
+    Ok(CurvePanel::new(sweep.title, sweep.quantity.clone(), curves))
 }
 
 /// Returns the bandwidth by the criterion in two versions: corrected, and as printed in the paper.

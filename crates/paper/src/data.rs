@@ -4,6 +4,7 @@ use crate::scene_run::Shot;
 use etendue_compare::PlaneComparison;
 use etendue_field::{ProjectionGrid, Slices, VirtualPlane};
 use etendue_figures::{DrawnPicture, Figure};
+use etendue_report::table::csv;
 use etendue_store::Failure;
 use etendue_store::npz::{Npz, Number};
 use ndarray::{Array2, ArrayBase, Axis, Data, Dimension, arr1};
@@ -14,154 +15,21 @@ pub(crate) const DESCRIPTION: &str = "columns.csv";
 /// The columns of [`DESCRIPTION`].
 const HEADER: [&str; 5] = ["file", "name", "unit", "axes", "meaning"];
 
-/// The arrays of a plane: name, unit, axes and meaning.
-const ARRAYS: [[&str; 4]; 16] = [
-    [
-        "light_field",
-        FIELD,
-        "x, u",
-        "measured light field, integrated over y and v with the window; cells fill ± half_widths",
-    ],
-    [
-        "light_field_sigma",
-        FIELD,
-        "x, u",
-        "standard error of light_field",
-    ],
-    [
-        "half_widths",
-        "m; slope or rad",
-        "2",
-        "half-widths of the light field in x and u",
-    ],
-    [
-        "measured",
-        POWER,
-        "ρ, ν",
-        "measured |S|², averaged over azimuths; shot noise is subtracted, so it may be below 0",
-    ],
-    [
-        "measured_sigma",
-        POWER,
-        "ρ, ν",
-        "standard error of measured",
-    ],
-    [
-        "predicted",
-        POWER,
-        "ρ, ν",
-        "predicted |S|², averaged over azimuths",
-    ],
-    [
-        "measured_slice",
-        SPECTRUM,
-        "ρ, ν",
-        "measured S at azimuth 0, complex",
-    ],
-    [
-        "measured_slice_sigma",
-        SPECTRUM,
-        "ρ, ν",
-        "standard deviation of measured_slice, root of its mean squared modulus",
-    ],
-    [
-        "predicted_slice",
-        SPECTRUM,
-        "ρ, ν",
-        "predicted S at azimuth 0, complex",
-    ],
-    ["rho", "cycles/m", "ρ", "spatial frequencies"],
-    ["nu", PER_ANGLE, "ν", "angular frequencies"],
-    [
-        "full_radial",
-        POWER,
-        RINGS,
-        "measured mean of |ℓ̂|² over rings; shot noise is subtracted",
-    ],
-    [
-        "full_radial_sigma",
-        POWER,
-        RINGS,
-        "standard error of full_radial",
-    ],
-    [
-        "full_radial_predicted",
-        POWER,
-        RINGS,
-        "predicted mean of |ℓ̂|² over rings",
-    ],
-    [
-        "rho_edges",
-        "cycles/m",
-        "|Ωxy|",
-        "edges of the rings in |Ωxy|",
-    ],
-    [
-        "nu_edges",
-        PER_ANGLE,
-        "|Ωuv|",
-        "edges of the rings in |Ωuv|",
-    ],
-];
-const FIELD: &str = "W m⁻² sr⁻¹ m";
-const SPECTRUM: &str = "W m⁻² sr⁻¹ m²";
-const POWER: &str = "W² m⁻⁴ sr⁻² m⁴";
-const PER_ANGLE: &str = "cycles/slope; on a surface, cycles/rad";
-const RINGS: &str = "|Ωxy|, |Ωuv|";
+/// The unit, the axes and the meaning of what a figure stores: the arrays of a `plane`; each `row` of
+/// pictures that are not arrays of a scene, which has the name of its quantity if it has no name;
+/// each `column` of `figure.csv`, of which the one without a name is the quantity that the vertical
+/// axis shows.
+const WORDS: &str = include_str!("words.csv");
 
-/// The meaning of the pictures of a row that are not arrays of a scene. A row without a name has
-/// the name of its quantity.
-const ROWS: [(&str, &str); 12] = [
-    (
-        "2D",
-        "power spectrum of the scene in 2D (flatland), computed",
-    ),
-    (
-        "across",
-        "measured light field over the second position and the second direction, integrated over the first ones: the inverse transform of the slice at 90°",
-    ),
-    (
-        "difference",
-        "radiance less that of the reference, relative to white",
-    ),
-    (
-        "measured",
-        "measured power, with the axes and from the planes that the figure states",
-    ),
-    (
-        "off the chain",
-        "|measured − first-order chain|, a root mean square over azimuths, in percent of the largest measured modulus",
-    ),
-    ("phase", "phase of measured_slice; NaN where it is dark"),
-    ("power", "|measured_slice|²"),
-    (
-        "predicted",
-        "predicted power, with the axes and from the planes that the figure states",
-    ),
-    (
-        "relative luminance",
-        "radiance relative to white, at most 1",
-    ),
-    ("samples per pixel", "shading samples per pixel, at most 1"),
-    ("square", "square of the criterion that the column names"),
-    ("theory", "the function that the column names, computed"),
-];
-
-/// The meaning of the columns of `figure.csv`; the remaining column is the quantity that the
-/// vertical axis shows.
-const COLUMNS: [(&str, &str); 8] = [
-    ("panel", "title of the panel"),
-    ("axis", "quantity along x, with its unit"),
-    ("curve", "name of the curve in the key"),
-    ("x", "place along x"),
-    (
-        "standard error",
-        "standard error of the value, from batches of photons; 0 for computed values",
-    ),
-    ("column", "heading of the column above the bar"),
-    ("predicted", "predicted height of the bar, in its unit"),
-    ("", "value on the vertical axis"),
-];
+/// Returns the unit, the axes and the meaning of an array, a row or a column; empty if it has none.
+fn words_of(kind: &str, name: &str) -> [String; 3] {
+    let mut reader = csv::Reader::from_reader(WORDS.as_bytes());
+    let mut known = reader.records().filter_map(Result::ok);
+    let found = known.find(|word| word[0] == *kind && word[1] == *name);
+    found.map_or_else(Default::default, |word| {
+        [2, 3, 4].map(|i| word[i].to_owned())
+    })
+}
 
 /// Returns the names and contents of the data files of a figure.
 pub(crate) fn files(
@@ -187,7 +55,8 @@ pub(crate) fn files(
         files.push(("figure.csv", figure.csv.clone().into_bytes()));
         rows.extend(columns(&figure.csv)?);
     }
-    files.push((DESCRIPTION, table(rows)?));
+    let rows = rows.into_iter().map(Vec::from);
+    files.push((DESCRIPTION, csv(&HEADER.map(str::to_owned), rows)?));
     Ok(files)
 }
 
@@ -197,20 +66,12 @@ fn columns(csv: &str) -> Result<Vec<[String; 5]>, Failure> {
     let header = reader.headers().map_err(Failure::cannot_run)?;
     let described = header.iter().map(|heading| {
         let (name, unit) = heading.split_once(" [").unwrap_or((heading, ""));
-        let known = COLUMNS.iter().find(|(name, _)| *name == heading);
-        let (_, meaning) = known.unwrap_or(&COLUMNS[COLUMNS.len() - 1]);
-        ["figure.csv", name, unit.trim_end_matches(']'), "", meaning].map(str::to_owned)
+        let [.., meaning] = words_of("column", heading);
+        let [.., other] = words_of("column", "");
+        let meaning = if meaning.is_empty() { other } else { meaning };
+        ["figure.csv", name, unit.trim_end_matches(']'), "", &meaning].map(str::to_owned)
     });
     Ok(described.collect())
-}
-
-fn table(rows: Vec<[String; 5]>) -> Result<Vec<u8>, Failure> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(HEADER).map_err(Failure::cannot_run)?;
-    for row in rows {
-        writer.write_record(row).map_err(Failure::cannot_run)?;
-    }
-    writer.into_inner().map_err(Failure::cannot_run)
 }
 
 /// Unit, axes and meaning of an array.
@@ -249,7 +110,7 @@ impl Arrays {
         Ok(())
     }
 
-    /// Adds an array of [`ARRAYS`].
+    /// Adds an array of a plane.
     fn add_known<A, S, D>(
         &mut self,
         place: &str,
@@ -261,9 +122,12 @@ impl Arrays {
         S: Data<Elem = A>,
         D: Dimension,
     {
-        let known = ARRAYS.iter().find(|[name, ..]| *name == array);
-        let [_, unit, axes, meaning] = known.unwrap_or(&[""; 4]);
-        self.add(&format!("{place}.{array}"), of, [unit, axes, meaning])
+        let words = words_of("plane", array);
+        self.add(
+            &format!("{place}.{array}"),
+            of,
+            words.each_ref().map(String::as_str),
+        )
     }
 
     /// Adds the light field, the radial spectra and the slices at azimuth 0 of a plane, each
@@ -318,10 +182,9 @@ impl Arrays {
         }
         let name = format!("figure.{}.{}", word(&picture.row), word(&picture.column));
         let [(x, columns), (y, rows)] = &picture.axes;
-        let known = ROWS.iter().find(|(row, _)| *row == picture.row);
-        let meaning = known.map_or("", |(_, meaning)| meaning);
+        let [.., meaning] = words_of("row", &picture.row);
         let axes = format!("{x}, {y}");
-        self.add(&name, &picture.values, [&picture.unit, &axes, meaning])?;
+        self.add(&name, &picture.values, [&picture.unit, &axes, &meaning])?;
         for (end, (heading, centers)) in [("x", (x, columns)), ("y", (y, rows))] {
             let (quantity, unit) = heading.split_once(" [").unwrap_or((heading, ""));
             let words = [unit.trim_end_matches(']'), quantity, "centres of cells"];
@@ -422,9 +285,14 @@ pub(crate) mod tests {
     fn the_page_of_files_names_each_array_of_a_plane() {
         let page = include_str!("../../../results/files.md");
         let (_, figures) = page.split_once("## Figures").unwrap();
-        for [name, unit, axes, meaning] in ARRAYS {
+        let mut reader = csv::Reader::from_reader(WORDS.as_bytes());
+        let words: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        let arrays: Vec<_> = words.iter().filter(|word| &word[0] == "plane").collect();
+        assert_eq!(arrays.len(), 16);
+        for word in arrays {
+            let name = &word[1];
             assert!(figures.contains(&format!("`{name}`")), "{name}");
-            assert!(![unit, axes, meaning].contains(&""), "{name}");
+            assert!(word.iter().all(|text| !text.is_empty()), "{name}");
         }
     }
 

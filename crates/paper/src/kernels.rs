@@ -30,15 +30,6 @@ fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f
     Curve::new(kind, name, (0..=POINTS).map(point).collect())
 }
 
-fn panel(title: &str, x: AxisQuantity, curves: Vec<Curve>) -> CurvePanel {
-    CurvePanel {
-        title: title.to_owned(),
-        x,
-        curves,
-        is_log: [false; 2],
-    }
-}
-
 fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
     Curves {
         title: title.to_owned(),
@@ -59,7 +50,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "The cosine over slopes, and its transforms",
         "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; the transform of *g* is 4π|*Ω*| *K*_{1}(2π|*Ω*|), and the transform of *G* is π/2 times as large.",
         vec![
-            panel(
+            CurvePanel::new(
                 "(a) in slope",
                 slope(),
                 vec![
@@ -67,7 +58,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
                     curve(CurveKind::Rival, solid, [-3.0, 3.0], &g_3d),
                 ],
             ),
-            panel(
+            CurvePanel::new(
                 "(b) transforms",
                 frequency(),
                 vec![
@@ -167,13 +158,13 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let range = [-FRAC_PI_2, FRAC_PI_2];
     let functions = materials.iter().map(|of| {
         let theory = curve(CurveKind::Theory, "theory", range, &|t| of.value(t));
-        panel(&format!("{}, over angle", of.name), angles(), vec![theory])
+        CurvePanel::new(&format!("{}, over angle", of.name), angles(), vec![theory])
     });
     let transforms = materials.iter().map(|of| {
         let theory = curve(CurveKind::Theory, "theory", [-2.0, 2.0], &|o| {
             of.transform(o)
         });
-        panel(
+        CurvePanel::new(
             &format!("{}, transform", of.name),
             frequency(),
             vec![theory],

@@ -53,23 +53,32 @@ impl Recipe {
     }
 }
 
+/// A strip without full radial spectra, to which each recipe adds what it has.
+const PLAIN: Recipe = Recipe {
+    name: "",
+    about: "",
+    scenes: &[],
+    also: &[],
+    full_radial: false,
+    draw: |taken| taken.strip(),
+};
+
 /// All recipes, in the order of the paper.
 pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "1",
         about: "spectra along a path, from the light to the light that leaves a diffuse receiver",
         scenes: &[("fig1", etendue_scenes::FIG1)],
-        also: &[],
         full_radial: true,
-        draw: |taken| taken.strip(),
+        ..PLAIN
     },
     Recipe {
         name: "3",
         about: "the two parameterisations, in slopes and in angles, and travel",
         scenes: &[("fig3", etendue_scenes::FIG3)],
         also: &[("fig8", etendue_scenes::FIG8)],
-        full_radial: false,
         draw: coordinates,
+        ..PLAIN
     },
     Recipe {
         name: "4",
@@ -79,25 +88,22 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig4_point", etendue_scenes::FIG4_POINT),
             ("fig4_spot", etendue_scenes::FIG4_SPOT),
         ],
-        also: &[],
-        full_radial: false,
         draw: lights,
+        ..PLAIN
     },
     Recipe {
         name: "5",
         about: "the cosine over slopes, g, and its transforms in 2D and 3D",
-        scenes: &[],
-        also: &[],
-        full_radial: false,
         draw: kernels::slopes,
+        ..PLAIN
     },
     Recipe {
         name: "6",
         about: "all steps of diffuse shading: computed in flatland, and measured and predicted in 3D",
         scenes: &[("fig1", etendue_scenes::FIG1)],
-        also: &[],
         full_radial: true,
         draw: steps,
+        ..PLAIN
     },
     Recipe {
         name: "7",
@@ -107,17 +113,15 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig7_other", etendue_scenes::FIG7_OTHER),
             ("fig7_two", etendue_scenes::FIG7_TWO),
         ],
-        also: &[],
-        full_radial: false,
         draw: occluders,
+        ..PLAIN
     },
     Recipe {
         name: "8",
         about: "the receiver by slopes and by angles: their difference, and bandwidths",
         scenes: &[("fig8", etendue_scenes::FIG8)],
-        also: &[],
-        full_radial: false,
         draw: parameterisations,
+        ..PLAIN
     },
     Recipe {
         name: "9",
@@ -127,17 +131,15 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig9b", etendue_scenes::FIG9B),
             ("fig9c", etendue_scenes::FIG9C),
         ],
-        also: &[],
         full_radial: true,
         draw: blockers,
+        ..PLAIN
     },
     Recipe {
         name: "10",
         about: "the seven steps of shading a curved glossy receiver",
         scenes: &[("fig10", etendue_scenes::FIG10)],
-        also: &[],
-        full_radial: false,
-        draw: |taken| taken.strip(),
+        ..PLAIN
     },
     Recipe {
         name: "11",
@@ -146,17 +148,14 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig11", etendue_scenes::FIG11),
             ("solar_oven", etendue_scenes::TABLE1_SOLAR_OVEN),
         ],
-        also: &[],
-        full_radial: false,
         draw: caustic,
+        ..PLAIN
     },
     Recipe {
         name: "12",
         about: "transforms of the clamped cosine, alone and with Fresnel factors",
-        scenes: &[],
-        also: &[],
-        full_radial: false,
         draw: kernels::fresnel,
+        ..PLAIN
     },
     Recipe {
         name: "13",
@@ -165,17 +164,16 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("twist", etendue_scenes::TABLE1_TWIST),
             ("twisted_glossy", etendue_scenes::TABLE1_TWISTED_GLOSSY),
         ],
-        also: &[],
-        full_radial: false,
         draw: directions,
+        ..PLAIN
     },
     Recipe {
         name: "14",
         about: "diffuse shading under an environment map: convolution and restriction together are a product",
         scenes: &[("fig14", etendue_scenes::FIG14)],
         also: &[("fig14_product", etendue_scenes::FIG14_PRODUCT)],
-        full_radial: false,
         draw: environment,
+        ..PLAIN
     },
     Recipe {
         name: "15",
@@ -185,26 +183,22 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("bandwidth", etendue_scenes::BANDWIDTH),
             ("bandwidth_edge", etendue_scenes::BANDWIDTH_EDGE),
         ],
-        full_radial: false,
         draw: adaptive,
+        ..PLAIN
     },
     #[cfg(feature = "worlds")]
     Recipe {
         name: "16",
         about: "the criteria of Fig. 17, and the shading samples they place",
-        scenes: &[],
-        also: &[],
-        full_radial: false,
         draw: creatures::criteria,
+        ..PLAIN
     },
     #[cfg(feature = "worlds")]
     Recipe {
         name: "17",
         about: "a picture from few shading samples: placed uniformly, by the paper, by the corrected criteria, and a reference",
-        scenes: &[],
-        also: &[],
-        full_radial: false,
         draw: creatures::pictures,
+        ..PLAIN
     },
     Recipe {
         name: "table1",
@@ -219,9 +213,8 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fresnel_grazing", etendue_scenes::TABLE1_FRESNEL_GRAZING),
             ("tiles", etendue_scenes::TABLE1_TILES),
         ],
-        also: &[],
-        full_radial: false,
         draw: operators,
+        ..PLAIN
     },
 ];
 

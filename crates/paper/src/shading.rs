@@ -44,16 +44,13 @@ fn product(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let panels = rejected.iter().zip([0, 0, 1]).map(|(rejected, part)| {
         let points = rho.iter().zip(&found);
         let points = points.map(|(rho, (s, errors))| [*rho, [s.re, s.im][part], errors[part]]);
-        CurvePanel {
-            title: format!("{}, {}", ["Re", "Im"][part], rejected.name),
-            x: AxisQuantity::new("*ρ*", "cycles/m"),
-            curves: vec![
-                line(CurveKind::Rival, rejected, part),
-                line(CurveKind::Theory, right, part),
-                Curve::new(CurveKind::Measured, "photons", points.collect()),
-            ],
-            is_log: [false; 2],
-        }
+        let title = format!("{}, {}", ["Re", "Im"][part], rejected.name);
+        let curves = vec![
+            line(CurveKind::Rival, rejected, part),
+            line(CurveKind::Theory, right, part),
+            Curve::new(CurveKind::Measured, "photons", points.collect()),
+        ];
+        CurvePanel::new(&title, AxisQuantity::new("*ρ*", "cycles/m"), curves)
     });
     let mut panels: Vec<CurvePanel> = panels.collect();
     letter_panels('e', &mut panels);

@@ -3,6 +3,7 @@
 use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, TESTS, Verdict, sidak};
 use etendue_field::{brief, decimals, fixed, grouped, uncertain};
 use etendue_pipeline::Summary;
+use etendue_store::Failure;
 
 /// Returns the table of planes, the table of parameters, and the verdict, as printed by
 /// `etendue run`.
@@ -117,9 +118,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         row.push(word(plane.verdict).to_owned());
         row
     };
-    std::iter::once(header.into_iter().map(str::to_owned).collect())
-        .chain(summary.planes.iter().map(row))
-        .collect()
+    below_header(&header, summary.planes.iter().map(row))
 }
 
 /// Returns the difference between the photons and the first-order chain, and the expected value of
@@ -162,20 +161,21 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
         "measured",
         "smallest detectable change",
     ];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for plane in &summary.planes {
-        for parameter in &plane.parameters {
-            let [measured, change] = measured(parameter);
-            rows.push(vec![
-                plane.name.clone(),
-                with_unit(&parameter.name, &parameter.unit),
-                brief(parameter.scene),
-                measured,
-                change,
-            ]);
-        }
-    }
-    rows
+    let row = |plane: &PlaneReport, parameter: &ParameterReport| {
+        let [measured, change] = measured(parameter);
+        vec![
+            plane.name.clone(),
+            with_unit(&parameter.name, &parameter.unit),
+            brief(parameter.scene),
+            measured,
+            change,
+        ]
+    };
+    let rows = summary.planes.iter().flat_map(|plane| {
+        let parameters = plane.parameters.iter();
+        parameters.map(move |parameter| row(plane, parameter))
+    });
+    below_header(&header, rows)
 }
 
 /// Returns a table of the differences between measured and predicted full radial spectra, plane
@@ -190,8 +190,7 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
         "noise alone",
         "aliasing [σ]",
     ];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    rows.extend(summary.planes.iter().filter_map(|plane| {
+    let rows = summary.planes.iter().filter_map(|plane| {
         let found = plane.full_radial?;
         Some(vec![
             plane.name.clone(),
@@ -202,8 +201,8 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
             percent(found.power.noise_limit),
             number(found.aliasing, 2),
         ])
-    }));
-    rows
+    });
+    below_header(&header, rows)
 }
 
 /// Returns a name with its unit in brackets.
@@ -266,6 +265,24 @@ pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
         padded.join("  ").trim_end().to_owned()
     };
     rows.iter().map(line).collect()
+}
+
+/// Returns a table as CSV.
+pub fn csv(
+    header: &[String],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> Result<Vec<u8>, Failure> {
+    let text = etendue_figures::csv_text(header, rows).map_err(Failure::cannot_run)?;
+    Ok(text.into_bytes())
+}
+
+/// Returns the rows of a table below its header.
+pub fn below_header(
+    header: &[&str],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> Vec<Vec<String>> {
+    let header = header.iter().map(|name| (*name).to_owned()).collect();
+    std::iter::once(header).chain(rows).collect()
 }
 
 /// Returns a sentence with the verdict of a run and its reasons.

@@ -2,7 +2,7 @@
 
 use etendue_field::{tidy, uncertain};
 use etendue_predict::{AXES, CovarianceReport};
-use etendue_report::table::aligned;
+use etendue_report::table::{aligned, below_header};
 
 /// The matrix entries that are shown: variances, and the covariances that arise as light travels.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
@@ -28,7 +28,7 @@ fn plane(report: &CovarianceReport) -> Vec<String> {
         "{}: |ρ| ≤ {rho} cycles/m, |ν| ≤ {nu} cycles/slope",
         report.name
     )];
-    let head = ["", "traced", "in band", "exact", "measured"].map(str::to_owned);
+    let header = ["", "traced", "in band", "exact", "measured"];
     let entries = SHOWN.map(|[i, j]| {
         let of = |matrix: &Option<[[f64; 4]; 4]>| number(matrix.map(|matrix| matrix[i][j]));
         vec![
@@ -52,8 +52,10 @@ fn plane(report: &CovarianceReport) -> Vec<String> {
             measured(moment.found.measured, moment.found.error),
         ]
     });
-    let rows = std::iter::once(head.to_vec()).chain(entries).chain(slice);
-    lines.extend(aligned(rows.collect()));
+    lines.extend(aligned(below_header(
+        &header,
+        entries.into_iter().chain(slice),
+    )));
     lines.extend(report.remarks.iter().map(|remark| format!("  {remark}")));
     lines
 }

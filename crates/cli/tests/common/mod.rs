@@ -92,6 +92,45 @@ pub fn call(folder: &Path, arguments: &str) -> Output {
         .unwrap()
 }
 
+/// Runs `etendue` with the given arguments, and prints what it prints without `--quiet`.
+pub fn loud(folder: &Path, arguments: &str) -> Output {
+    let mut command = etendue();
+    let command = command
+        .current_dir(folder)
+        .args(arguments.split_whitespace());
+    command.output().unwrap()
+}
+
+/// Returns the output of a command that ends with an exit code.
+#[track_caller]
+fn ended(output: Output, arguments: &str, code: i32) -> Output {
+    assert_eq!(output.status.code(), Some(code), "{arguments}: {output:?}");
+    output
+}
+
+/// Runs [`call`] and checks that the command succeeds.
+#[track_caller]
+pub fn passes(folder: &Path, arguments: impl AsRef<str>) -> Output {
+    let arguments = arguments.as_ref();
+    ended(call(folder, arguments), arguments, 0)
+}
+
+/// Runs [`loud`] and checks the exit code; returns the standard output.
+#[track_caller]
+pub fn told(folder: &Path, arguments: impl AsRef<str>, code: i32) -> String {
+    let arguments = arguments.as_ref();
+    let output = ended(loud(folder, arguments), arguments, code);
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Runs [`call`] and checks that the command fails with an exit code; returns its message.
+#[track_caller]
+pub fn fails(folder: &Path, arguments: impl AsRef<str>, code: i32) -> String {
+    let arguments = arguments.as_ref();
+    let output = ended(call(folder, arguments), arguments, code);
+    String::from_utf8(output.stderr).unwrap()
+}
+
 /// Checks that the command refuses bad input. It must print one line with all `parts`, and must not
 /// write to `out`.
 pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {

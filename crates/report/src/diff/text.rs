@@ -3,7 +3,7 @@
 use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
-use crate::table::{aligned, number, percent, with_unit};
+use crate::table::{aligned, below_header, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
 use etendue_field::{grouped, percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
@@ -93,9 +93,7 @@ fn planes(diff: &Diff) -> Vec<Vec<String>> {
         row.push(word(plane.verdict(level)).to_owned());
         row
     });
-    std::iter::once(header.map(str::to_owned).to_vec())
-        .chain(rows)
-        .collect()
+    below_header(&header, rows)
 }
 
 fn cells(plane: &Compared) -> Vec<String> {

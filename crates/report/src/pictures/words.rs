@@ -54,17 +54,17 @@ fn projection_axes([x, u]: [&str; 2], plane: &VirtualPlane, grid: &ProjectionGri
 }
 
 /// Returns the axes of the light field of a plane, (x, u) across its ray.
-pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     projection_axes(CoordinateNames::of(plane).along, plane, grid)
 }
 
 /// Returns the axes of the light field across the other two coordinates, (y, v).
-pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+pub(super) fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     projection_axes(CoordinateNames::of(plane).across, plane, grid)
 }
 
 /// Returns the axes of the spectrum of a plane, (ρ, ν).
-pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
+pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     let axis = |name, unit, axis: &FrequencyAxis| {
         Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
     };
@@ -77,7 +77,7 @@ pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
 
 /// Returns the axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each
 /// axis contains zero. The first ring is half as wide as the others, but is drawn at equal width.
-pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
+pub(super) fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
     let axis = |name, unit, edges: &[f64]| {
         let rings = edges.len() - 1;
@@ -92,7 +92,7 @@ pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
 }
 
 /// Returns the quantity of a full radial spectrum.
-pub fn full_radial_quantity() -> AxisQuantity {
+pub(super) fn full_radial_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
 

@@ -2,6 +2,7 @@
 //! point.
 
 use crate::sweep::values::SweepPoint;
+use etendue_report::table;
 use etendue_store::Failure;
 use serde_json::Value;
 
@@ -60,80 +61,59 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     numbers
 }
 
-/// A column of the table.
-enum Column {
-    Words(Vec<String>),
-    /// Numbers; `None` for a cell without a number.
-    Numbers(Vec<Option<f64>>),
-}
-
-/// The data of a row of the table: a number of a plane at a point.
-struct TableRow<'a> {
-    at: &'a PointResult,
-    plane: &'a Value,
-    number: TableNumber,
-}
-
-/// Returns the names and the contents of the columns: the swept fields, then the other data of
-/// each row.
-fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
+/// Returns the table as CSV with all digits; cells without a number are empty.
+pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
+    // Seeds are texts, because a double cannot represent every seed exactly.
+    let names = [
+        "point",
+        "seed",
+        "plane",
+        "class",
+        "verdict",
+        "p_value",
+        "radial_p_value",
+        "relative_error",
+        "noise_limit",
+        "quantity",
+        "unit",
+        "measured",
+        "predicted",
+        "error",
+    ];
+    let header: Vec<String> = paths
+        .iter()
+        .cloned()
+        .chain(names.map(str::to_owned))
+        .collect();
+    let digits = |number: Option<f64>| number.map_or(String::new(), |x| format!("{x:?}"));
+    let row = |at: &PointResult, plane: &Value, number: TableNumber| {
+        let text = |key: &str| plane[key].as_str().unwrap_or_default().to_owned();
+        let share = |key: &str| digits(plane[key].as_f64());
+        let swept = at.point.iter().map(|(_, value)| digits(Some(*value)));
+        let rest = [
+            at.folder.clone(),
+            at.summary["seed"].to_string(),
+            text("name"),
+            text("class"),
+            text("verdict"),
+            share("p_value"),
+            digits(plane["radial"]["p_value"].as_f64()),
+            share("relative_error"),
+            share("noise_limit"),
+            number.quantity,
+            number.unit,
+            digits(number.measured),
+            digits(number.predicted),
+            digits(number.error),
+        ];
+        swept.chain(rest).collect()
+    };
     let planes = found
         .iter()
         .flat_map(|at| at.planes().map(move |plane| (at, plane)));
     let rows = planes.flat_map(|(at, plane)| {
         let numbers = numbers(plane).into_iter();
-        numbers.map(move |number| TableRow { at, plane, number })
+        numbers.map(move |number| row(at, plane, number))
     });
-    let rows: Vec<TableRow<'_>> = rows.collect();
-    let words = |of: &dyn Fn(&TableRow<'_>) -> String| Column::Words(rows.iter().map(of).collect());
-    let values =
-        |of: &dyn Fn(&TableRow<'_>) -> Option<f64>| Column::Numbers(rows.iter().map(of).collect());
-    let text = |key: &'static str| {
-        words(&move |row| row.plane[key].as_str().unwrap_or_default().to_owned())
-    };
-    let share = |key: &'static str| values(&move |row| row.plane[key].as_f64());
-    let swept = paths.iter().enumerate();
-    let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
-    let rest = [
-        ("point", words(&|row| row.at.folder.clone())),
-        // Texts. Seeds are also texts, because a double cannot represent every seed exactly.
-        ("seed", words(&|row| row.at.summary["seed"].to_string())),
-        ("plane", text("name")),
-        ("class", text("class")),
-        ("verdict", text("verdict")),
-        ("p_value", share("p_value")),
-        (
-            "radial_p_value",
-            values(&|row| row.plane["radial"]["p_value"].as_f64()),
-        ),
-        ("relative_error", share("relative_error")),
-        ("noise_limit", share("noise_limit")),
-        ("quantity", words(&|row| row.number.quantity.clone())),
-        ("unit", words(&|row| row.number.unit.clone())),
-        ("measured", values(&|row| row.number.measured)),
-        ("predicted", values(&|row| row.number.predicted)),
-        ("error", values(&|row| row.number.error)),
-    ];
-    let rest = rest.map(|(name, column)| (name.to_owned(), column));
-    swept.chain(rest).collect()
-}
-
-/// Returns the table as CSV with all digits; cells without a number are empty.
-pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
-    let columns = columns(paths, found);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = columns.iter().map(|(name, _)| name);
-    writer.write_record(names).map_err(Failure::cannot_run)?;
-    let count = columns.first().map_or(0, |(_, column)| match column {
-        Column::Words(words) => words.len(),
-        Column::Numbers(numbers) => numbers.len(),
-    });
-    for row in 0..count {
-        let cells = columns.iter().map(|(_, column)| match column {
-            Column::Words(words) => words[row].clone(),
-            Column::Numbers(numbers) => numbers[row].map_or(String::new(), |x| format!("{x:?}")),
-        });
-        writer.write_record(cells).map_err(Failure::cannot_run)?;
-    }
-    writer.into_inner().map_err(Failure::cannot_run)
+    table::csv(&header, rows)
 }

@@ -4,7 +4,7 @@ use super::{
     AxisSetPower, CountReport, PlaneVariance, SamplerReport, VarianceCurve, VarianceOptions,
 };
 use etendue_field::{brief, fixed, grouped, percent, uncertain};
-use etendue_report::table::aligned;
+use etendue_report::table::{aligned, below_header};
 use etendue_spectrum::Uncertain;
 
 /// Number of sets of axes in a row.
@@ -131,10 +131,9 @@ fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
         "found",
         "tail",
     ];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    rows.extend(curve.counts.iter().map(|count| row(count, mean).to_vec()));
+    let rows = curve.counts.iter().map(|count| row(count, mean).to_vec());
     let mut lines = vec![format!("{name}{slope}")];
-    lines.extend(aligned(rows));
+    lines.extend(aligned(below_header(&header, rows)));
     if curve.counts.iter().any(|count| count.is_undecided) {
         lines.push(
             "undecided: more than 20 % of the prediction is tail, and a fixed set may have peaks there"
