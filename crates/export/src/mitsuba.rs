@@ -5,7 +5,6 @@
 //! many digits that every f64 is read back exactly.
 
 mod aperture;
-mod id;
 mod light;
 mod material;
 mod patch;
@@ -21,7 +20,6 @@ use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
 use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
-use id::id;
 use xml::{Xml, diffuse};
 
 /// A part of a scene that Mitsuba cannot represent.
@@ -155,7 +153,7 @@ impl Writer {
                 .flat(id, &Shape::Rectangle(rectangle), distance, &looks);
         } else {
             let [a, b, c, d] = surface.corners();
-            self.mesh(id, &[[a, b, c], [a, c, d]], &looks);
+            self.flat_mesh(id, &[[a, b, c], [a, c, d]], &looks);
         }
     }
 
@@ -180,9 +178,7 @@ impl Writer {
             mesh.faces.len(),
             mesh.error
         ));
-        let file = format!("{id}.ply");
-        self.xml.smooth_mesh(&id, &file, &looks);
-        self.files.push((file, ply::smooth(&mesh)));
+        self.mesh(&id, ply::smooth(&mesh), &looks);
         Ok(())
     }
 
@@ -190,14 +186,11 @@ impl Writer {
         self.xml.comment(&format!("mesh {:?}", mesh.name));
         let Some(smooth) = &mesh.smooth else {
             let looks = mesh.albedo.map_or_else(xml::black, diffuse);
-            self.mesh(id, &mesh.triangles, &looks);
+            self.flat_mesh(id, &mesh.triangles, &looks);
             return Ok(());
         };
         let looks = Self::specular(&smooth.event, &mesh.name)?;
-        let file = format!("{id}.ply");
-        self.xml.smooth_mesh(id, &file, &looks);
-        let bytes = ply::shaded(&mesh.triangles, &smooth.normals);
-        self.files.push((file, bytes));
+        self.mesh(id, ply::shaded(&mesh.triangles, &smooth.normals), &looks);
         Ok(())
     }
 
@@ -220,7 +213,7 @@ impl Writer {
                 let off = if error > 0.0 { &off } else { "" };
                 self.xml
                     .comment(&format!("aperture {name:?}: triangles around a hole{off}"));
-                self.mesh(&id, &triangles, &xml::black());
+                self.flat_mesh(&id, &triangles, &xml::black());
                 return Ok(());
             }
             Mask::Grating(_) => return Err(NotInMitsuba::Mask { name: name.clone() }),
@@ -240,7 +233,7 @@ impl Writer {
                 .iter()
                 .flat_map(|r| halves(r, layer.distance))
                 .collect();
-            self.mesh(&id, &triangles, &xml::black());
+            self.flat_mesh(&id, &triangles, &xml::black());
         }
         for (i, disc) in discs.into_iter().enumerate() {
             let (id, disc) = (format!("{id}_disk_{i}"), Shape::Disc(disc));
@@ -249,10 +242,27 @@ impl Writer {
         Ok(())
     }
 
-    fn mesh(&mut self, id: &str, triangles: &[[DVec3; 3]], looks: &str) {
+    /// Writes triangles without normals.
+    fn flat_mesh(&mut self, id: &str, triangles: &[[DVec3; 3]], looks: &str) {
+        let looks = format!("<boolean name=\"face_normals\" value=\"true\"/>{looks}");
+        self.mesh(id, ply::ply(triangles), &looks);
+    }
+
+    /// Writes a mesh and its file.
+    fn mesh(&mut self, id: &str, bytes: Vec<u8>, looks: &str) {
         let file = format!("{id}.ply");
         self.xml.mesh(id, &file, looks);
-        self.files.push((file, ply::ply(triangles)));
+        self.files.push((file, bytes));
+    }
+}
+
+/// Returns the identifier of an object. Names in the scene file may contain any character,
+/// identifiers may not.
+fn id(object: Object) -> String {
+    match object {
+        Object::Surface(i) => format!("surface_{i}"),
+        Object::Mesh(i) => format!("mesh_{i}"),
+        Object::Patch(i) => format!("smooth_{i}"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The virtual planes, for a script that records light fields with Mitsuba.
 
-use super::id::id;
+use super::id;
 use etendue_field::{Frame, Orientation, Quantity, Side, SliceGrid, Window};
 use etendue_scene::{Hit, Scene};
 use serde::Serialize;

@@ -72,13 +72,6 @@ impl Xml {
         ));
     }
 
-    /// Writes a mesh with normals.
-    pub(super) fn smooth_mesh(&mut self, id: &str, file: &str, looks: &str) {
-        self.line(&format!(
-            "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>{looks}</shape>"
-        ));
-    }
-
     /// Writes a projector at the origin that emits along z. In its square picture, y points up and
     /// −x points to the right.
     pub(super) fn projector(&mut self, file: &str, degrees: f64) {
@@ -102,8 +95,7 @@ impl Xml {
     /// Writes a mesh that is read from a file in the same folder.
     pub(super) fn mesh(&mut self, id: &str, file: &str, looks: &str) {
         self.line(&format!(
-            "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>\
-             <boolean name=\"face_normals\" value=\"true\"/>{looks}</shape>"
+            "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>{looks}</shape>"
         ));
     }
 
