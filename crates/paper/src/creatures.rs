@@ -94,47 +94,40 @@ impl CreatureScene {
     }
 }
 
-/// A picture with its heading and a line below it, which may be empty.
-struct PicturePanel<'a> {
-    head: &'a str,
-    values: &'a Array2<f64>,
-    foot: String,
+/// The heading of a picture, its values, and a line below it, which may be empty.
+type PicturePanel<'a> = (&'a str, &'a Array2<f64>, String);
+
+/// Returns pictures without lines below them.
+fn plain<'a>(
+    pictures: impl IntoIterator<Item = (&'a str, &'a Array2<f64>)>,
+) -> Vec<PicturePanel<'a>> {
+    let each = pictures.into_iter();
+    each.map(|(head, values)| (head, values, String::new()))
+        .collect()
 }
 
-impl<'a> PicturePanel<'a> {
-    fn new(head: &'a str, values: &'a Array2<f64>) -> Self {
-        Self {
-            head,
-            values,
-            foot: String::new(),
-        }
-    }
-}
-
-/// Pictures side by side.
-struct CreatureRow<'a> {
-    title: &'a str,
-    note: &'a str,
-    panels: &'a [PicturePanel<'a>],
-    quantity: AxisQuantity,
-    scale: Scale,
-    /// Whether all pictures share the quantity's range of colors; otherwise, each picture has the
-    /// range of its own values.
-    shared: bool,
-}
-
-impl CreatureRow<'_> {
-    fn drawn(&self, scene: &CreatureScene, style: &Style) -> Result<Figure, Failure> {
-        let pictures = self.panels.iter().map(|panel| scene.shown(panel.values));
-        let heads = self.panels.iter().map(|panel| panel.head.to_owned());
-        let feet = self.panels.iter().map(|panel| vec![panel.foot.clone()]);
-        let (quantity, pictures) = (self.quantity.clone(), pictures.collect());
-        let row = PlateRow::new("", quantity, self.scale, self.shared, pictures);
+impl CreatureScene {
+    /// Draws pictures side by side, with a title and a note. All pictures share the range of colors,
+    /// unless the scale is in decibels.
+    fn side_by_side(
+        &self,
+        style: &Style,
+        [title, note]: [&str; 2],
+        (quantity, scale): (&str, Scale),
+        panels: &[PicturePanel<'_>],
+    ) -> Result<Figure, Failure> {
+        let is_shared = !matches!(scale, Scale::Decibel { .. });
+        let pictures = panels
+            .iter()
+            .map(|(_, values, _)| self.shown(values))
+            .collect();
+        let quantity = AxisQuantity::new(quantity, "");
+        let feet = panels.iter().map(|(.., foot)| vec![foot.clone()]);
         let of = Plate {
-            title: self.title,
-            note: self.note,
-            heads: heads.collect(),
-            rows: vec![row],
+            title,
+            note,
+            heads: panels.iter().map(|(head, ..)| (*head).to_owned()).collect(),
+            rows: vec![PlateRow::new("", quantity, scale, is_shared, pictures)],
             feet: feet.filter(|lines| !lines[0].is_empty()).collect(),
             ..Plate::default()
         };
@@ -153,45 +146,35 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let up_to_one =
         |values: &[f64]| scene.picture(values.iter().map(|n| n.clamp(0.0, 1.0)).collect());
     let [density, dots] = [up_to_one(&paper.density)?, up_to_one(&paper.samples)?];
-    let squared = |title, note, panels| CreatureRow {
-        title,
-        note,
-        panels,
-        quantity: AxisQuantity::new("square", ""),
-        scale: Scale::Decibel { floor: -50.0 },
-        shared: false,
+    let squared = |words, panels: [(&str, &Array2<f64>); 2]| {
+        let scale = Scale::Decibel { floor: -50.0 };
+        scene.side_by_side(&taken.style, words, ("square", scale), &plain(panels))
     };
-    let below = CreatureRow {
-        title: "",
-        note: "(e) Requested samples per pixel by (c), shown up to one. (f) Pixels that have a sample.",
-        panels: &[
-            PicturePanel::new("(e) density", &density),
-            PicturePanel::new("(f) samples", &dots),
-        ],
-        quantity: AxisQuantity::new("samples per pixel", ""),
-        scale: Scale::Linear,
-        shared: true,
-    };
+    let of_samples = plain([("(e) density", &density), ("(f) samples", &dots)]);
     Ok(stacked(&[
         squared(
-            "Criteria and shading samples",
-            "(a) The bandwidth by Eq. 20, from finite differences on the screen. (b) 1/*d'*, the harmonic mean over the hemisphere. (a) to (d) are squared, in decibels below the largest value of each picture.",
-            &[
-                PicturePanel::new("(a) curvature", &curvature),
-                PicturePanel::new("(b) blockers", &blockers),
+            [
+                "Criteria and shading samples",
+                "(a) The bandwidth by Eq. 20, from finite differences on the screen. (b) 1/*d'*, the harmonic mean over the hemisphere. (a) to (d) are squared, in decibels below the largest value of each picture.",
             ],
-        )
-        .drawn(&scene, &taken.style)?,
+            [("(a) curvature", &curvature), ("(b) blockers", &blockers)],
+        )?,
         squared(
-            "",
-            "(c) The bandwidth by Eq. 21, as printed. (d) The same, corrected, in the direction where it is largest.",
-            &[
-                PicturePanel::new("(c) Eq. 21", &printed),
-                PicturePanel::new("(d) Eq. 21, corrected", &corrected),
+            [
+                "",
+                "(c) The bandwidth by Eq. 21, as printed. (d) The same, corrected, in the direction where it is largest.",
             ],
-        )
-        .drawn(&scene, &taken.style)?,
-        below.drawn(&scene, &photographs(&taken.style))?,
+            [("(c) Eq. 21", &printed), ("(d) Eq. 21, corrected", &corrected)],
+        )?,
+        scene.side_by_side(
+            &photographs(&taken.style),
+            [
+                "",
+                "(e) Requested samples per pixel by (c), shown up to one. (f) Pixels that have a sample.",
+            ],
+            ("samples per pixel", Scale::Linear),
+            &of_samples,
+        )?,
     ]))
 }
 
@@ -304,40 +287,25 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let feet = feet.chain([format!("noise: relMSE {noise:.4}")]);
     let heads = HEADS.into_iter().chain(["(d) reference"]);
     let panels = heads.zip(&shown).zip(feet);
-    let panels: Vec<PicturePanel<'_>> = panels
-        .map(|((head, values), foot)| PicturePanel { head, values, foot })
-        .collect();
-    let differences = HEADS.into_iter().zip(&off);
-    let differences: Vec<PicturePanel<'_>> = differences
-        .map(|(head, values)| PicturePanel::new(head, values))
-        .collect();
+    let panels = panels.map(|((head, values), foot)| (head, values, foot));
+    let panels: Vec<PicturePanel<'_>> = panels.collect();
     let note = format!(
         "(a) to (c): {} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 per pixel. (d): {} paths in each pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²) over the reference *r*, less its noise; *ε* is a hundredth of the mean. Robust: without the thousandth of the pixels with the largest errors.",
         scene.samples, scene.reference
     );
     let style = photographs(&taken.style);
-    let luminance = |title, note, panels| CreatureRow {
-        title,
-        note,
-        panels,
-        quantity: AxisQuantity::new("relative luminance", ""),
-        scale: Scale::Linear,
-        shared: true,
+    let luminance = |words, panels| {
+        scene.side_by_side(&style, words, ("relative luminance", Scale::Linear), panels)
     };
-    let below = CreatureRow {
-        title: "Difference from the reference, in relative luminance",
-        note: "",
-        panels: &differences,
-        quantity: AxisQuantity::new("difference", ""),
-        scale: Scale::Signed {
-            most: MAX_DIFFERENCE,
-        },
-        shared: true,
+    let scale = Scale::Signed {
+        most: MAX_DIFFERENCE,
     };
+    let title = "Difference from the reference, in relative luminance";
+    let differences = plain(HEADS.into_iter().zip(&off));
     let mut figure = stacked(&[
-        luminance("A picture of few shading samples", &note, &panels[..2]).drawn(&scene, &style)?,
-        luminance("", "", &panels[2..]).drawn(&scene, &style)?,
-        below.drawn(&scene, &style)?,
+        luminance(["A picture of few shading samples", &note], &panels[..2])?,
+        luminance(["", ""], &panels[2..])?,
+        scene.side_by_side(&style, [title, ""], ("difference", scale), &differences)?,
     ]);
     figure.pictures[HEADS.len()].sigma = Some(found.reference_error(&scene)?);
     Ok(figure)

@@ -1,7 +1,9 @@
 //! Diffuse shading in flatland. A light, strips and a receiver are on parallel lines, as in Fig. 6
 //! of Durand et al. 2005.
 
-use etendue_field::{Complex, FrequencyAxis, Profile, cis, sinc};
+use etendue_field::{Complex, FrequencyAxis, Light, Profile, Shape, VirtualPlane, cis, sinc};
+use etendue_scene::{BlockersFile, Scene};
+use etendue_store::Failure;
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
@@ -10,13 +12,13 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Flatland {
     /// Half the width of the light, which is centred at 0.
-    pub(crate) half_light: f64,
+    half_light: f64,
     /// Distance from the light to the strips.
-    pub(crate) to_strips: f64,
+    to_strips: f64,
     /// The strips, [from, to], in ascending order and without overlap.
-    pub(crate) strips: Vec<[f64; 2]>,
+    strips: Vec<[f64; 2]>,
     /// Distance from the light to the receiver, which is beyond the strips.
-    pub(crate) to_receiver: f64,
+    to_receiver: f64,
 }
 
 /// Steps of diffuse shading (Durand et al. 2005, Fig. 6).
@@ -36,17 +38,69 @@ pub(crate) enum DiffuseStep {
     Reflection,
 }
 
+impl DiffuseStep {
+    /// All steps, in order.
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Emission,
+        Self::Travel,
+        Self::Visibility,
+        Self::SecondTravel,
+        Self::Cosine,
+        Self::Reflection,
+    ];
+}
+
 /// Number of nodes of the midpoint rule over slopes, or over positions on the receiver. Edges cause
 /// kinks in the integrand, and these kinks cause a relative error of 10⁻⁵.
 const NODES: usize = 1024;
 
 impl Flatland {
+    /// Takes widths along X and distances along the central ray from a scene. The scene must have a
+    /// rectangular light, one array of squares and a floor.
+    pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
+        let missing = || Failure::cannot_run(format!("{} has no flatland version", scene.name));
+        let Light::Area {
+            shape: Shape::Rectangle(light),
+            ..
+        } = &scene.light
+        else {
+            return Err(missing());
+        };
+        let array = scene.file.blockers.first();
+        let Some(BlockersFile::JitteredSquares {
+            count, pitch, fill, ..
+        }) = array
+        else {
+            return Err(missing());
+        };
+        let layer = scene.blockers.first().ok_or_else(missing)?;
+        let floor = scene.path.legs.first().ok_or_else(missing)?;
+        let middle = 0.5 * (f64::from(count[0]) - 1.0);
+        let strips = (0..count[0]).map(|i| {
+            let center = (f64::from(i) - middle) * pitch;
+            [center - 0.5 * fill * pitch, center + 0.5 * fill * pitch]
+        });
+        Ok(Self {
+            half_light: 0.5 * light.size[0],
+            to_strips: layer.distance,
+            strips: strips.collect(),
+            to_receiver: floor.length,
+        })
+    }
+
+    /// Returns |S|² of a step as an array [ρ, ν], in the window and at the frequencies of a plane.
+    pub(crate) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
+        let window = [&plane.window.x, &plane.window.u];
+        let spectrum = self.spectrum(step, window, [&plane.grid.rho, &plane.grid.nu]);
+        spectrum.mapv(|s| s.norm_sqr())
+    }
+
     /// Returns the spectrum of the windowed light field after a step, as an array [ρ, ν] with
     /// ascending ρ and ν. The profiles and axes are for x and v.
     ///
     /// The integral over positions is in closed form, and the integral over slopes is a midpoint
     /// rule that is accurate to 10⁻⁵ of the value at zero frequency.
-    pub(crate) fn spectrum(
+    fn spectrum(
         &self,
         step: DiffuseStep,
         [along_x, along_v]: [&Profile; 2],
@@ -191,7 +245,7 @@ fn product(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::{Light, Mask, Rectangle, Shape, Window};
+    use etendue_field::{Mask, Rectangle, Window};
     use etendue_theory::{Chain, Operator, Source, at, g_hat};
 
     const STRIPS: [[f64; 2]; 3] = [[-0.31, -0.19], [-0.06, 0.06], [0.19, 0.27]];

@@ -18,7 +18,6 @@ mod creatures;
 mod criteria;
 mod data;
 mod energy;
-mod flat;
 mod flatland;
 mod kernels;
 mod make;

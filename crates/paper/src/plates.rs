@@ -1,6 +1,6 @@
 //! Draws figures that show several scenes, or several kinds of spectra, side by side.
 
-use crate::flat::Flat;
+use crate::flatland::{DiffuseStep, Flatland};
 use crate::rows::{compared, feet, lettered, light_fields, phase, power};
 use crate::scene_run::Shot;
 use crate::subject::FigureData;
@@ -50,10 +50,10 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "5 cosine",
         "6 reflection",
     ];
-    let flat = Flat::of(&taken.shots[0].scene)?;
+    let flat = Flatland::of(&taken.shots[0].scene)?;
     let spectra: Vec<Array2<f64>> = seen
         .iter()
-        .zip(Flat::STEPS)
+        .zip(DiffuseStep::ALL)
         .map(|(seen, step)| flat.power(step, seen.plane))
         .collect();
     let both = seen.iter().zip(&spectra);
