@@ -5,7 +5,6 @@
 use crate::common::{call, files, json, passes, refused, told};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
 use tempfile::TempDir;
 
 /// The lamp fills the window of the first plane. The window of the second plane cuts off a part of

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::call;
+use crate::common::passes;
 use etendue_explorer::{CELLS, PathPlace, SettingKey, Setup, scene};
 use etendue_field::{Complex, Projection, Slices};
 use ndarray::{Array2, Array3};

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{loud, scene};
+use crate::common::{fails, loud, passes, scene};
 use etendue_compare::{Verdict, compare};
 use etendue_field::Light;
 use etendue_predict::{Applicability, predict, test_of};
@@ -246,7 +246,6 @@ fn what_makes_no_light_is_refused() {
 #[test]
 fn the_command_knows_what_it_can_judge() {
     let folder = folder();
-    let call = |arguments: &str| loud(folder.path(), arguments);
     let write = |name: &str, edits: &[(&str, &str)]| {
         fs::write(folder.path().join(name), text(edits)).unwrap();
     };
@@ -269,16 +268,18 @@ fn the_command_knows_what_it_can_judge() {
         ),
         ("run led.ron --method backward --out out", ""),
     ] {
-        let message = fails(arguments, 2);
+        let message = fails(folder.path(), arguments, 2);
         assert!(message.contains(part), "{arguments}: {message}");
     }
-    let output = call("check led.ron");
+    let output = loud(folder.path(), "check led.ron");
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("do not go forward"), "{message}");
     for threads in 1..=2 {
-        passes(&format!(
-            "run led.ron --photons 20000 --set run.resolution=1 --threads {threads} --out out{threads} --save mcpl"
-        ));
+        let run = "run led.ron --photons 20000 --set run.resolution=1 --save mcpl";
+        passes(
+            folder.path(),
+            format!("{run} --threads {threads} --out out{threads}"),
+        );
     }
     let of = |out: &str| fs::read(folder.path().join(out).join("arrival/photons.mcpl")).unwrap();
     assert!(of("out1") == of("out2"));

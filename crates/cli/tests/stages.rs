@@ -179,9 +179,7 @@ fn bad_arguments_are_refused() {
         ("predict small.ron --out file/out", 3, "cannot write"),
         ("compare --predicted p --out out", 2, "--measured"),
     ] {
-        let output = call(folder, arguments);
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{arguments}: {message}");
+        let message = fails(folder, arguments, code);
         assert!(message.contains(part), "{arguments}: {message}");
         assert!(!folder.join("out").exists(), "{arguments}");
     }

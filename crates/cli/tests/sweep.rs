@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, fails, files, json, passes, refused};
+use crate::common::{SCENE, fails, files, json, passes, refused};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -211,13 +211,8 @@ fn bad_sweeps_are_refused() {
     // A sweep of another scene, or of other fields, does not replace this sweep.
     passes(path, PITCH);
     let other = format!("{PITCH} --set blockers.0.fill=0.3");
-    let output = call(path, &other);
-    assert_eq!(output.status.code(), Some(3), "{output:?}");
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("in which blockers[0].fill is")
-    );
+    let message = fails(path, &other, 3);
+    assert!(message.contains("in which blockers[0].fill is"));
     let fields = "sweep small.ron --photons 4096 --out s --set blockers.0.fill=0.3,0.5";
     let message = fails(path, fields, 3);
     assert!(

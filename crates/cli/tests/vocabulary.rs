@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, array, call, fails, files, json, passes, refused, scene, told};
+use crate::common::{SCENE, array, fails, files, json, passes, refused, scene, told};
 use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
@@ -87,13 +87,7 @@ fn a_mesh_goes_through_all_stages() {
     assert!(run == compared);
     let summary = json(&path.join("run/summary.json"));
     assert_eq!(summary["planes"][1]["class"], "reference");
-    let output = call(path, "predict small.ron --out out");
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(
-        String::from_utf8(output.stderr)
-            .unwrap()
-            .contains("tetra.obj")
-    );
+    assert!(fails(path, "predict small.ron --out out", 2).contains("tetra.obj"));
 }
 
 #[test]
