@@ -39,7 +39,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         .flat_map(|scene| load::inputs(&args.scene.source(), scene))
         .collect();
     let claim = |path: &PathBuf| OutputFile::claim(path, args.work.force.force, &inputs);
-    let csv = args.csv.as_ref().map(claim).transpose()?;
+    let file = args.csv.as_ref().map(claim).transpose()?;
     let rows = on_threads(&args.work.threads, || {
         let is_long = args.measure && scenes.len() > 1;
         let bar = progress::steps(
@@ -65,7 +65,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         ));
     }
     let header = header(args);
-    if let Some(file) = csv {
+    if let Some(file) = file {
         let digits = rows.iter().map(|row| cells(row, |x| format!("{x:?}"), ""));
         file.write(&csv(&header, digits)?)?;
     }

@@ -7,7 +7,7 @@ use crate::progress;
 use crate::threads::on_threads;
 use etendue_pipeline::{limits, load};
 use etendue_predict::{Applicability, Convergence, converge as shrink, seconds};
-use etendue_report::table::aligned;
+use etendue_report::table::{aligned, below_header};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 
@@ -59,10 +59,13 @@ fn shrunk(scene: &Scene, theories: &[Applicability]) -> Vec<Convergence> {
 
 fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
     let shares = planes[0].steps.iter();
-    let shares = shares.map(|step| format!("e = {}", step.share));
-    let mut header = vec!["plane".to_owned()];
-    header.extend(shares);
-    header.push("order".to_owned());
+    let shares: Vec<String> = shares.map(|step| format!("e = {}", step.share)).collect();
+    let shares = shares.iter().map(String::as_str);
+    let header: Vec<&str> = ["plane"]
+        .into_iter()
+        .chain(shares)
+        .chain(["order"])
+        .collect();
     let row = |plane: &Convergence| {
         let mut row = vec![plane.plane.clone()];
         row.extend(plane.steps.iter().map(|step| match step.error {
@@ -72,7 +75,5 @@ fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
         row.push(plane.order.map_or("–".to_owned(), |n| format!("{n:.2}")));
         row
     };
-    std::iter::once(header)
-        .chain(planes.iter().map(row))
-        .collect()
+    below_header(&header, planes.iter().map(row))
 }

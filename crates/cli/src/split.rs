@@ -63,11 +63,9 @@ fn scene_words(args: &SplitArgs) -> Result<String, Failure> {
         ("--seed", args.photons.seed),
     ];
     for (option, number) in numbers {
-        words.extend(
-            number
-                .iter()
-                .flat_map(|n| [option.to_owned(), n.to_string()]),
-        );
+        if let Some(number) = number {
+            words.extend([option.to_owned(), number.to_string()]);
+        }
     }
     if args.photons.method != Method::Photons {
         let name = args.photons.method.name();
@@ -90,10 +88,11 @@ struct SplitWork {
 
 impl SplitWork {
     fn measure(&self, batches: &str, part: &str) -> String {
-        let Self {
-            scene, part: parts, ..
-        } = self;
-        format!("etendue measure {scene} --batches {batches} --out {parts}{part}")
+        let Self { scene, .. } = self;
+        format!(
+            "etendue measure {scene} --batches {batches} --out {}{part}",
+            self.part
+        )
     }
 
     fn predict(&self) -> String {
@@ -101,13 +100,10 @@ impl SplitWork {
     }
 
     fn compare(&self) -> String {
-        let Self {
-            part,
-            predicted,
-            out,
-            ..
-        } = self;
-        format!("etendue compare --measured {part}* --predicted {predicted} --out {out}")
+        format!(
+            "etendue compare --measured {}* --predicted {} --out {}",
+            self.part, self.predicted, self.out
+        )
     }
 
     /// Returns the commands for the parts, followed by the commands to run after all parts are

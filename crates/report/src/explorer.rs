@@ -74,41 +74,20 @@ fn plain(mut file: SceneFile) -> SceneFile {
         }
     }
     file.path.visits = vec!["receiver".to_owned(); file.path.visits.len()];
-    let SceneFile {
-        format,
-        light,
-        other_lights,
-        blockers,
-        surfaces,
-        path,
-        window,
-        frequencies,
-        as_printed,
-        ..
-    } = file;
-    let mut frequencies = frequencies;
-    frequencies.azimuths = 1;
+    file.frequencies.azimuths = 1;
     for (axis, profile) in [
-        (&mut frequencies.rho, window.x),
-        (&mut frequencies.nu, window.u),
+        (&mut file.frequencies.rho, file.window.x),
+        (&mut file.frequencies.nu, file.window.u),
     ] {
         let spacing = axis.spacing.unwrap_or(0.5 / profile.half_width());
         axis.spacing = Some(spacing);
         axis.max = (axis.max / spacing - 1e-9).ceil() * spacing;
     }
     SceneFile {
-        format,
         description: String::new(),
-        light,
-        other_lights,
-        blockers,
-        surfaces,
-        path,
         planes: Vec::new(),
-        window,
-        frequencies,
-        as_printed,
         run: etendue_scene::RunFile::default(),
+        ..file
     }
 }
 

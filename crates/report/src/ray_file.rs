@@ -16,11 +16,13 @@ const MOST_TEXTS: usize = 20;
 #[must_use]
 pub fn description(file: &RayFile, packed: bool) -> Vec<String> {
     let set = file.rays();
-    let mut rows = vec![("format", format_line(file, packed))];
-    rows.push(("rays", set.len().to_string()));
-    rows.push(("power", power(file, &set)));
-    rows.push(("positions", bounds(&set)));
-    rows.push(("wavelengths", wavelengths(&set)));
+    let mut rows = vec![
+        ("format", format_line(file, packed)),
+        ("rays", set.len().to_string()),
+        ("power", power(file, &set)),
+        ("positions", bounds(&set)),
+        ("wavelengths", wavelengths(&set)),
+    ];
     match file {
         RayFile::Tm25(file) => rows.extend(of_tm25(file)),
         RayFile::Mcpl(file) => rows.extend(of_mcpl(file)),
@@ -82,12 +84,8 @@ fn bounds(set: &RaySet) -> String {
         return "none".to_owned();
     };
     let axis = |i: usize| {
-        format!(
-            "{} {} to {}",
-            ["x", "y", "z"][i],
-            tidy(low[i]),
-            tidy(high[i])
-        )
+        let [low, high] = [low[i], high[i]].map(tidy);
+        format!("{} {low} to {high}", ["x", "y", "z"][i])
     };
     format!("{} m", [0, 1, 2].map(axis).join(", "))
 }
@@ -124,20 +122,10 @@ fn wavelengths(set: &RaySet) -> String {
 
 fn of_tm25(file: &Tm25File) -> Vec<(&'static str, String)> {
     let header = file.header();
-    let mut rows = Vec::new();
-    let date: Vec<u8> = header
-        .date
-        .iter()
-        .copied()
-        .take_while(|&b| b != 0)
-        .collect();
+    let date: Vec<u8> = header.date.into_iter().take_while(|b| *b != 0).collect();
     let made = ["simulated", "measured"].get(usize::try_from(header.creation_method).unwrap_or(2));
-    rows.push((
-        "made",
-        format!("{} {}", made.unwrap_or(&"unknown"), text(&date))
-            .trim_end()
-            .to_owned(),
-    ));
+    let made = format!("{} {}", made.unwrap_or(&"unknown"), text(&date));
+    let mut rows = vec![("made", made.trim_end().to_owned())];
     let texts = Tm25Header::TEXTS.into_iter().zip(&header.texts);
     let texts = texts.chain([("additional text", &header.additional_text)]);
     for (name, content) in texts.filter(|(_, content)| !content.is_empty()) {

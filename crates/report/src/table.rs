@@ -32,21 +32,14 @@ pub fn text(summary: &Summary) -> String {
         lines.extend(aligned(parameters));
         lines.push(String::new());
     }
-    if summary
-        .planes
-        .iter()
-        .any(|plane| plane.full_radial.is_some())
-    {
-        lines.extend(aligned(full_radials(summary)));
+    let full_radials = full_radials(summary);
+    if full_radials.len() > 1 {
+        lines.extend(aligned(full_radials));
         lines.push(String::new());
     }
     for plane in &summary.planes {
-        lines.extend(
-            plane
-                .warnings
-                .iter()
-                .map(|w| format!("warning: {}: {w}", plane.name)),
-        );
+        let warnings = plane.warnings.iter();
+        lines.extend(warnings.map(|w| format!("warning: {}: {w}", plane.name)));
     }
     lines.extend(summary.planes.iter().filter_map(on_chain));
     let inquiries = summary.inquiries.iter();
@@ -322,14 +315,16 @@ pub fn verdict_text(summary: &Summary) -> String {
             )
         }
         Verdict::Undecided => {
-            let undecided = with(Verdict::Undecided);
-            let reasons = undecided.iter().filter_map(|plane| {
-                let reason = plane.undecided.as_ref()?;
-                Some(format!("\n  {}: {reason}", plane.name))
-            });
-            format!("undecided:{}", reasons.collect::<String>())
+            let open = with(Verdict::Undecided).into_iter();
+            undecided(open.filter_map(|plane| Some((&plane.name, plane.undecided.clone()?))))
         }
     }
+}
+
+/// Returns the reasons why planes are undecided, in a sentence.
+pub(crate) fn undecided<'a>(planes: impl Iterator<Item = (&'a String, String)>) -> String {
+    let reasons = planes.map(|(name, reason)| format!("\n  {name}: {reason}"));
+    format!("undecided:{}", reasons.collect::<String>())
 }
 
 /// Returns the predicted slope with the same number of digits as the measured slope.

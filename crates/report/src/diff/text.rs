@@ -3,7 +3,7 @@
 use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
-use crate::table::{aligned, below_header, number, percent, with_unit};
+use crate::table::{aligned, below_header, number, percent, undecided, with_unit};
 use etendue_compare::{Estimate, Verdict};
 use etendue_field::{grouped, percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
@@ -124,23 +124,17 @@ fn shown(estimate: Estimate) -> String {
 
 fn parameters(diff: &Diff) -> Vec<Vec<String>> {
     let header = ["plane", "parameter", "A", "B", "σ apart", "p"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for plane in &diff.planes {
+    let rows = diff.planes.iter().flat_map(|plane| {
         let found = plane.compared().map(|compared| &compared.parameters);
-        for parameter in found.into_iter().flatten() {
-            let [a, b] = parameter.estimates;
+        found.into_iter().flatten().map(|parameter| {
+            let [a, b] = parameter.estimates.map(shown);
             let (pull, p) = parameter.pull;
-            rows.push(vec![
-                plane.name.clone(),
-                with_unit(&parameter.name, &parameter.unit),
-                shown(a),
-                shown(b),
-                number(Some(pull), 2),
-                number(Some(p), 5),
-            ]);
-        }
-    }
-    rows
+            let parameter = with_unit(&parameter.name, &parameter.unit);
+            let [pull, p] = [number(Some(pull), 2), number(Some(p), 5)];
+            vec![plane.name.clone(), parameter, a, b, pull, p]
+        })
+    });
+    below_header(&header, rows)
 }
 
 fn word(verdict: Verdict) -> &'static str {
@@ -180,11 +174,8 @@ fn verdict(diff: &Diff) -> String {
             format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e})")
         }
         Verdict::Undecided => {
-            let reasons = diff.planes.iter().filter_map(|plane| {
-                let reason = plane.undecided(level)?;
-                Some(format!("\n  {}: {reason}", plane.name))
-            });
-            format!("undecided:{}", reasons.collect::<String>())
+            let planes = diff.planes.iter();
+            undecided(planes.filter_map(|plane| Some((&plane.name, plane.undecided(level)?))))
         }
     }
 }
