@@ -3,8 +3,9 @@
 use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{LEFT, PageGrid, PlateRow, RIGHT, drawn_pictures, inner};
+use crate::grid::{LEFT, PageGrid, RIGHT, inner};
 use crate::panel::Panel;
+use crate::picture::{PlateRow, drawn_pictures};
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LEAST_TEXT, SMALL_TEXT, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};

@@ -5,9 +5,8 @@ use crate::bar;
 use crate::color::{Colors, hex};
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{
-    GAPS, Guide, LEFT, PageGrid, PlateRow, RIGHT, drawn_pictures, ends, guide_strokes, inner,
-};
+use crate::grid::{GAPS, LEFT, PageGrid, RIGHT, ends, guide_strokes, inner};
+use crate::picture::{Guide, PlateRow, drawn_pictures};
 use crate::plate::feet;
 use crate::section::Section;
 use crate::sizes::{SOFT, TICK_TEXT};

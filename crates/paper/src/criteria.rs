@@ -6,7 +6,7 @@ use crate::rows::letter_panels;
 use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::measured_bandwidth;
-use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Figure};
 use etendue_pipeline::measured;
 use etendue_predict::{Applicability, criterion};
 use etendue_store::Failure;
@@ -61,14 +61,13 @@ pub(crate) fn criteria(taken: &FigureData<'_>, first: char) -> Result<Figure, Fa
         panel(taken, edge, &curvature("Eq. 21, edge at 0.4 m", behind))?,
     ];
     letter_panels(first, &mut panels);
-    taken.curves(&Curves {
-        title: "Criteria and photons".to_owned(),
-        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
-               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is smallest, the window determines the measured value."
-            .to_owned(),
-        y: AxisQuantity::new("*B*", "cycles/slope"),
-        panels: panels.to_vec(),
-    })
+    let words = [
+        "Criteria and photons",
+        "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
+         Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is smallest, the window determines the measured value.",
+    ];
+    let y = AxisQuantity::new("*B*", "cycles/slope");
+    taken.curves(words, y, panels.to_vec())
 }
 
 fn panel(

@@ -5,8 +5,8 @@ use crate::rows::letter_panels;
 use crate::subject::FigureData;
 use etendue_field::Fresnel;
 use etendue_figures::{
-    Axis, AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow,
-    Scale, stacked,
+    Axis, AxisQuantity, Curve, CurveKind, CurvePanel, Figure, Picture, Plate, PlateRow, Scale,
+    stacked,
 };
 use etendue_store::Failure;
 use etendue_theory::shading::{
@@ -30,15 +30,6 @@ fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f
     Curve::new(kind, name, (0..=POINTS).map(point).collect())
 }
 
-fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
-    Curves {
-        title: title.to_owned(),
-        note: note.to_owned(),
-        y: AxisQuantity::new("value", ""),
-        panels,
-    }
-}
-
 /// Draws g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
 pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slope = || AxisQuantity::new("*v*", "slope");
@@ -46,28 +37,29 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
     let g_3d = |v: f64| libm::pow(1.0 + v * v, -2.0);
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
-    let curves = taken.curves(&values(
+    let words = [
         "The cosine over slopes, and its transforms",
         "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; the transform of *g* is 4π|*Ω*| *K*_{1}(2π|*Ω*|), and the transform of *G* is π/2 times as large.",
-        vec![
-            CurvePanel::new(
-                "(a) in slope",
-                slope(),
-                vec![
-                    curve(CurveKind::Theory, flat, [-3.0, 3.0], &g),
-                    curve(CurveKind::Rival, solid, [-3.0, 3.0], &g_3d),
-                ],
-            ),
-            CurvePanel::new(
-                "(b) transforms",
-                frequency(),
-                vec![
-                    curve(CurveKind::Theory, flat, [-1.5, 1.5], &g_hat),
-                    curve(CurveKind::Rival, solid, [-1.5, 1.5], &|o| g_hat_3d(o, 0.0)),
-                ],
-            ),
-        ],
-    ))?;
+    ];
+    let panels = vec![
+        CurvePanel::new(
+            "(a) in slope",
+            slope(),
+            vec![
+                curve(CurveKind::Theory, flat, [-3.0, 3.0], &g),
+                curve(CurveKind::Rival, solid, [-3.0, 3.0], &g_3d),
+            ],
+        ),
+        CurvePanel::new(
+            "(b) transforms",
+            frequency(),
+            vec![
+                curve(CurveKind::Theory, flat, [-1.5, 1.5], &g_hat),
+                curve(CurveKind::Rival, solid, [-1.5, 1.5], &|o| g_hat_3d(o, 0.0)),
+            ],
+        ),
+    ];
+    let curves = taken.curves(words, AxisQuantity::new("value", ""), panels)?;
     Ok(stacked(&[curves, solid_slopes(taken)?]))
 }
 
@@ -182,11 +174,8 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     );
     let mut panels: Vec<CurvePanel> = functions.chain(transforms).collect();
     letter_panels('a', &mut panels);
-    let mut figure = taken.curves(&values(
-        "The clamped cosine, alone and with Fresnel factors",
-        &note,
-        panels,
-    ))?;
+    let words = ["The clamped cosine, alone and with Fresnel factors", &note];
+    let mut figure = taken.curves(words, AxisQuantity::new("value", ""), panels)?;
     for (of, below) in materials.iter().zip(&shares) {
         let name = of.name.replace(['_', '{', '}'], "");
         for (share, frequency) in SHARES.iter().zip(below) {

@@ -1,12 +1,12 @@
 //! Draws Fig. 8: the spectrum at the receiver over slopes, the spectrum over angles, and the
 //! difference of both.
 
-use crate::rows::{feet, lettered, spectra};
+use crate::rows::{feet, lettered};
 use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, PlaneComparison};
 use etendue_field::{Orientation, Slices, percent, uncertain};
 use etendue_figures::{Figure, Plate};
-use etendue_report::pictures::Seen;
+use etendue_report::pictures::{Seen, spectra};
 use etendue_report::table::off_by;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};

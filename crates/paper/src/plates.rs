@@ -1,7 +1,7 @@
 //! Draws figures that show several scenes, or several kinds of spectra, side by side.
 
 use crate::flatland::{DiffuseStep, Flatland};
-use crate::rows::{compared, feet, lettered, light_fields, phase, power};
+use crate::rows::{compared, feet, fields, lettered, phase, power};
 use crate::scene_run::Shot;
 use crate::subject::FigureData;
 use etendue_field::{VirtualPlane, percent};
@@ -88,7 +88,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let power = AxisQuantity::new("|*S*_{0}|^{2}", "");
     let phase = AxisQuantity::new("arg *S*_{0}", "degrees");
     let rows = vec![
-        light_fields("light field", &seen, true),
+        fields("light field", &seen, true),
         PlateRow::new("power", power, DECIBEL, true, pictures(0)),
         PlateRow::new("phase", phase, Scale::Phase, true, pictures(1)),
     ];

@@ -1,10 +1,8 @@
 //! Collects the pictures of the planes of a figure's scenes, row by row.
 
 use etendue_field::{Complex, Slices};
-use etendue_figures::{CurvePanel, Picture, PlateRow, Scale};
-use etendue_report::pictures::{
-    DECIBEL, Seen, full_radials, light_field_quantity, spectrum_quantity, verdict_lines,
-};
+use etendue_figures::{CurvePanel, PlateRow};
+use etendue_report::pictures::{Seen, full_radials, light_fields, spectra, verdict_lines};
 use ndarray::{Array2, Axis as Along};
 
 /// The phase is not shown where the power is below this share of the largest power.
@@ -33,38 +31,15 @@ pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     })
 }
 
-/// Returns a row of light fields.
-pub(crate) fn light_fields<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
-    let pictures = seen.iter().map(Seen::light_field).collect();
-    PlateRow::new(
-        name,
-        light_field_quantity(),
-        Scale::Linear,
-        shared,
-        pictures,
-    )
+/// Returns a row of the measured light fields of some planes.
+pub(crate) fn fields<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
+    light_fields(name, shared, seen.iter().map(Seen::light_field))
 }
 
-/// Returns a row of spectra.
-pub(crate) fn spectra<'a>(
-    name: &'a str,
-    shared: bool,
-    pictures: impl Iterator<Item = Picture<'a>>,
-) -> PlateRow<'a> {
-    PlateRow::new(
-        name,
-        spectrum_quantity(),
-        DECIBEL,
-        shared,
-        pictures.collect(),
-    )
-}
-
-/// Returns a row of measured spectra.
+/// Returns a row of the measured spectra of some planes.
 pub(crate) fn measured<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
-    let power = seen
-        .iter()
-        .map(|seen| seen.spectrum(seen.found.radial.power.view()));
+    let each = seen.iter();
+    let power = each.map(|seen| seen.spectrum(seen.found.radial.power.view()));
     spectra(name, shared, power)
 }
 
@@ -75,7 +50,7 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
         .iter()
         .map(|seen| seen.spectrum(seen.found.predicted_radial.view()));
     let mut rows = vec![
-        light_fields("light field", seen, shared),
+        fields("light field", seen, shared),
         measured("measured", seen, shared),
         spectra("predicted", shared, predicted),
     ];

@@ -5,7 +5,7 @@ use crate::criteria::criteria;
 use crate::product::{Explanation, ShadedCylinder};
 use crate::rows::{compared, feet, letter_panels, lettered};
 use crate::subject::FigureData;
-use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, stacked};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Figure, Plate, stacked};
 use etendue_report::pictures::Seen;
 use etendue_store::Failure;
 
@@ -54,14 +54,12 @@ fn product(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     });
     let mut panels: Vec<CurvePanel> = panels.collect();
     letter_panels('e', &mut panels);
-    taken.curves(&Curves {
-        title: "The product".to_owned(),
-        note: "*S*(*ρ*)/*S*(0) at *ν* = 0 of the light that leaves a diffuse cylinder under two lobes of light, over arc length. \
-               *p*: probability of a difference at least as large as that of the photons, if the line is true."
-            .to_owned(),
-        y: AxisQuantity::new("*S*/*S*(0)", ""),
-        panels,
-    })
+    let words = [
+        "The product",
+        "*S*(*ρ*)/*S*(0) at *ν* = 0 of the light that leaves a diffuse cylinder under two lobes of light, over arc length. \
+         *p*: probability of a difference at least as large as that of the photons, if the line is true.",
+    ];
+    taken.curves(words, AxisQuantity::new("*S*/*S*(0)", ""), panels)
 }
 
 /// Draws Fig. 15: the steps of section 6.2, and the criteria of this section compared with photons.

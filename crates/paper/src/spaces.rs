@@ -6,7 +6,7 @@ use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_field::percent;
 use etendue_figures::{
-    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, PlateRow, stacked,
+    AxisQuantity, Curve, CurveKind, CurvePanel, Figure, Plate, PlateRow, stacked,
 };
 use etendue_predict::{Applicability, Convergence, ConvergenceStep, converge};
 use etendue_report::pictures::across;
@@ -28,13 +28,11 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         ..Plate::default()
     })?;
     let panels = shrunk(&taken.also[0], &["angles"])?;
-    let error = orders(
-        taken,
+    let words = [
         "The error of using *u* in place of *θ*",
         "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, for a window *e* times as wide: tan *θ* equals *θ* up to terms of second order.",
-        &panels,
-        (2, 'd'),
-    )?;
+    ];
+    let error = orders(taken, words, &panels, (2, 'd'))?;
     Ok(stacked(&[spaces, error]))
 }
 
@@ -86,13 +84,11 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         &("twist", etendue_scenes::TABLE1_TWIST),
         &["curvature", "back", "outgoing"],
     )?;
-    let error = orders(
-        taken,
+    let words = [
         "The error of a flat (*θ*, *φ*)",
         "‖first order − exact‖/‖exact‖ at the mirror, for neighbourhoods *e* times as wide.",
-        &panels,
-        (1, 'e'),
-    )?;
+    ];
+    let error = orders(taken, words, &panels, (1, 'e'))?;
     Ok(stacked(&[plate, error]))
 }
 
@@ -113,8 +109,7 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
 /// letters of the panels begin with `first`.
 fn orders(
     taken: &FigureData<'_>,
-    title: &str,
-    note: &str,
+    words: [&str; 2],
     planes: &[Convergence],
     (order, first): (i32, char),
 ) -> Result<Figure, Failure> {
@@ -145,10 +140,5 @@ fn orders(
     };
     let mut panels: Vec<CurvePanel> = planes.iter().map(panel).collect();
     letter_panels(first, &mut panels);
-    taken.curves(&Curves {
-        title: title.to_owned(),
-        note: note.to_owned(),
-        y: AxisQuantity::new("error", ""),
-        panels,
-    })
+    taken.curves(words, AxisQuantity::new("error", ""), panels)
 }

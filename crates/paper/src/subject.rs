@@ -2,7 +2,7 @@
 
 use crate::quality::Quality;
 use crate::scene_run::Shot;
-use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
+use etendue_figures::{AxisQuantity, CurvePanel, Curves, Figure, Plate, Style, curves, plate};
 use etendue_pipeline::Reporter;
 use etendue_report::pictures;
 use etendue_scene::Scene;
@@ -72,9 +72,21 @@ impl FigureData<'_> {
         plate(of, &self.style).map_err(Failure::cannot_run)
     }
 
-    /// Draws curves.
-    pub(crate) fn curves(&self, of: &Curves) -> Result<Figure, Failure> {
-        curves(of, &self.style).map_err(Failure::cannot_run)
+    /// Draws curves of a quantity, with a title and a note.
+    pub(crate) fn curves(
+        &self,
+        words: [&str; 2],
+        y: AxisQuantity,
+        panels: Vec<CurvePanel>,
+    ) -> Result<Figure, Failure> {
+        let [title, note] = words.map(str::to_owned);
+        let of = Curves {
+            title,
+            note,
+            y,
+            panels,
+        };
+        curves(&of, &self.style).map_err(Failure::cannot_run)
     }
 
     /// Draws the planes of the first scene along its path, measured and predicted. The figure has

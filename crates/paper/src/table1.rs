@@ -1,6 +1,6 @@
 //! Draws Table 1: for each operator, the light before the operator and the light after it.
 
-use crate::rows::{light_fields, measured};
+use crate::rows::{fields, measured};
 use crate::subject::FigureData;
 use etendue_figures::{Figure, Plate, stacked};
 use etendue_report::pictures::Seen;
@@ -92,8 +92,8 @@ pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             note: if i == 0 { NOTE } else { "" },
             heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),
             rows: vec![
-                light_fields("before", &before, false),
-                light_fields("after", &after, false),
+                fields("before", &before, false),
+                fields("after", &after, false),
                 measured("before", &before, false),
                 measured("after", &after, false),
             ],

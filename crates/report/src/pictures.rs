@@ -9,10 +9,9 @@ mod strip;
 mod words;
 
 pub use cross_section::across;
-pub use seen::{Seen, full_radials};
+pub use seen::{Seen, full_radials, light_fields, spectra};
 pub use strip::{path, spectra_are, strip_of};
-pub(crate) use words::{light_field_axes, spectrum_axes};
-pub use words::{light_field_quantity, spectrum_quantity};
+pub(crate) use words::{light_field_axes, light_field_quantity, spectrum_axes};
 
 use crate::drawing;
 use crate::table::{self, spaced, word};
@@ -26,7 +25,7 @@ use etendue_store::arrays::{radial_z, z};
 use etendue_store::{Failure, Results};
 use finer::{Finer, finer_power};
 use std::path::Path;
-use words::CoordinateNames;
+use words::{CoordinateNames, spectrum_quantity};
 
 /// The colors of a spectrum, in decibels below its peak.
 pub const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };

@@ -2,11 +2,12 @@
 
 use super::DECIBEL;
 use super::words::{
-    across_axes, full_radial_axes, full_radial_quantity, light_field_axes, spectrum_axes,
+    across_axes, full_radial_axes, full_radial_quantity, light_field_axes, light_field_quantity,
+    spectrum_axes, spectrum_quantity,
 };
 use etendue_compare::PlaneComparison;
 use etendue_field::VirtualPlane;
-use etendue_figures::{Picture, PlateRow};
+use etendue_figures::{Picture, PlateRow, Scale};
 use ndarray::ArrayView2;
 
 /// A plane of a scene with its results.
@@ -49,6 +50,37 @@ impl<'a> Seen<'a> {
             [&full.measured.power, &full.predicted].map(|power| Picture::new(axes(), power.view())),
         )
     }
+}
+
+/// Returns a row of light fields.
+pub fn light_fields<'a>(
+    name: &'a str,
+    shared: bool,
+    pictures: impl Iterator<Item = Picture<'a>>,
+) -> PlateRow<'a> {
+    let pictures = pictures.collect();
+    PlateRow::new(
+        name,
+        light_field_quantity(),
+        Scale::Linear,
+        shared,
+        pictures,
+    )
+}
+
+/// Returns a row of spectra.
+pub fn spectra<'a>(
+    name: &'a str,
+    shared: bool,
+    pictures: impl Iterator<Item = Picture<'a>>,
+) -> PlateRow<'a> {
+    PlateRow::new(
+        name,
+        spectrum_quantity(),
+        DECIBEL,
+        shared,
+        pictures.collect(),
+    )
 }
 
 /// Returns the rows of full radial spectra, measured and predicted, if each plane has such a

@@ -2,9 +2,8 @@
 
 use super::cross_section::{across, differs_across};
 use super::finer::{Finer, finer_power};
-use super::seen::{Seen, full_radials};
-use super::words::{light_field_quantity, spectrum_quantity};
-use super::{DECIBEL, PictureFiles, verdict_lines};
+use super::seen::{Seen, full_radials, light_fields, spectra};
+use super::{PictureFiles, verdict_lines};
 use crate::drawing;
 use etendue_compare::{Class, PlaneComparison, Verdict};
 use etendue_field::{Side, Slices, VirtualPlane, grouped};
@@ -51,43 +50,7 @@ pub fn strip_of(
     // Figures are not interpolated, because they were run at finer frequencies.
     let finer = along.par_iter().filter(|_| !is_figure && both.is_none());
     let finer: Vec<_> = finer.map(PlaneOnPath::finer_power).collect();
-    let seen = || along.iter().map(|at| at.seen);
-    let mut rows = vec![fields("light field", seen().map(|seen| seen.light_field()))];
-    if let Some(both) = &both {
-        let sides = || seen().zip(both);
-        let spectra_at = |side| sides().map(move |(seen, both)| both.spectrum(seen, side));
-        rows.push(spectra("spectrum", spectra_at(0)));
-        let across = sides().map(|(seen, both)| seen.across(both.light_field.view()));
-        rows.push(fields("across", across));
-        rows.push(spectra("its spectrum", spectra_at(1)));
-    } else {
-        let finer = finer.iter().map(|values| Some(values.as_ref()?.view()));
-        let finer = finer.chain(std::iter::repeat(None));
-        let means = along.iter().zip(finer).map(|(at, finer)| Picture {
-            finer,
-            ..at.spectrum(&at.seen.found.radial.power)
-        });
-        rows.push(spectra("spectrum", means));
-    }
-    if is_figure {
-        let predicted = along.iter();
-        let predicted = predicted.map(|at| at.spectrum(&at.seen.found.predicted_radial));
-        rows.push(spectra("predicted", predicted));
-    }
-    if let Some([measured, predicted]) = full_radials(seen(), false) {
-        rows.push(measured);
-        rows.extend(is_figure.then_some(predicted));
-    }
-    if !off_chain.is_empty() {
-        let quantity = AxisQuantity::new("off the chain", "% of the peak");
-        let pictures = seen().zip(&off_chain);
-        let pictures = pictures.map(|(seen, values)| seen.spectrum(values.view()));
-        let pictures = pictures.collect();
-        rows.push(PlateRow {
-            bar: Some("|*S* − chain|"),
-            ..PlateRow::new("off the chain", quantity, Scale::Linear, true, pictures)
-        });
-    }
+    let rows = rows_of(&along, both.as_deref(), &finer, &off_chain, is_figure);
     let shown = match (&both, is_figure && differs) {
         (Some(_), _) => BOTH.to_owned(),
         (None, true) => format!("{}{MIXED}", spectra_are(scene.planes.iter())),
@@ -106,26 +69,65 @@ pub fn strip_of(
         ),
         section: &section,
         rows,
-        verdicts: seen().map(|seen| verdict_lines(seen.found)).collect(),
+        verdicts: along
+            .iter()
+            .map(|at| verdict_lines(at.seen.found))
+            .collect(),
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// Returns a row of light fields, each relative to its largest value.
-fn fields<'a>(name: &'a str, pictures: impl Iterator<Item = Picture<'a>>) -> PlateRow<'a> {
-    let pictures = pictures.collect();
-    PlateRow::new(name, light_field_quantity(), Scale::Linear, false, pictures)
-}
-
-/// Returns a row of spectra, each in decibels below its largest value.
-fn spectra<'a>(name: &'a str, pictures: impl Iterator<Item = Picture<'a>>) -> PlateRow<'a> {
-    PlateRow::new(
-        name,
-        spectrum_quantity(),
-        DECIBEL,
+/// Returns the rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are shown,
+/// and `off_chain` has the distances from the chain if they are shown.
+fn rows_of<'a>(
+    along: &'a [PlaneOnPath<'_>],
+    both: Option<&'a [BothSlices]>,
+    finer: &'a [Option<Array2<f64>>],
+    off_chain: &'a [Array2<f64>],
+    is_figure: bool,
+) -> Vec<PlateRow<'a>> {
+    let seen = || along.iter().map(|at| at.seen);
+    let mut rows = vec![light_fields(
+        "light field",
         false,
-        pictures.collect(),
-    )
+        seen().map(|seen| seen.light_field()),
+    )];
+    if let Some(both) = both {
+        let sides = || seen().zip(both);
+        let spectra_at = |side| sides().map(move |(seen, both)| both.spectrum(seen, side));
+        rows.push(spectra("spectrum", false, spectra_at(0)));
+        let across = sides().map(|(seen, both)| seen.across(both.light_field.view()));
+        rows.push(light_fields("across", false, across));
+        rows.push(spectra("its spectrum", false, spectra_at(1)));
+    } else {
+        let finer = finer.iter().map(|values| Some(values.as_ref()?.view()));
+        let finer = finer.chain(std::iter::repeat(None));
+        let means = along.iter().zip(finer).map(|(at, finer)| Picture {
+            finer,
+            ..at.spectrum(&at.seen.found.radial.power)
+        });
+        rows.push(spectra("spectrum", false, means));
+    }
+    if is_figure {
+        let predicted = along.iter();
+        let predicted = predicted.map(|at| at.spectrum(&at.seen.found.predicted_radial));
+        rows.push(spectra("predicted", false, predicted));
+    }
+    if let Some([measured, predicted]) = full_radials(seen(), false) {
+        rows.push(measured);
+        rows.extend(is_figure.then_some(predicted));
+    }
+    if !off_chain.is_empty() {
+        let quantity = AxisQuantity::new("off the chain", "% of the peak");
+        let pictures = seen().zip(off_chain);
+        let pictures = pictures.map(|(seen, values)| seen.spectrum(values.view()));
+        let pictures = pictures.collect();
+        rows.push(PlateRow {
+            bar: Some("|*S* − chain|"),
+            ..PlateRow::new("off the chain", quantity, Scale::Linear, true, pictures)
+        });
+    }
+    rows
 }
 
 /// The note below a strip if the light at azimuth 0 differs from the light at 90°.

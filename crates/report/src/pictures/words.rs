@@ -97,11 +97,11 @@ pub(super) fn full_radial_quantity() -> AxisQuantity {
 }
 
 /// Returns the quantity of a light field across the ray.
-pub fn light_field_quantity() -> AxisQuantity {
+pub(crate) fn light_field_quantity() -> AxisQuantity {
     CoordinateNames::ACROSS.light_field_quantity()
 }
 
 /// Returns the quantity of a radial spectrum.
-pub fn spectrum_quantity() -> AxisQuantity {
+pub(super) fn spectrum_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }
