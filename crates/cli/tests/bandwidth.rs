@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, fails, passes, refused, scene};
+use crate::common::{SCENE, fails, files, passes, refused, scene};
 use std::fs;
 
 /// Returns a folder with a scene of the repository as `glossy.ron`, and a scene without a glossy
@@ -77,14 +77,9 @@ fn bad_sweeps_and_scenes_are_refused() {
         refused(path, arguments, parts);
     }
     for sweep in ["a=0..1", "a=0..1:0", "a=0..x:3", "0..1:3", "a=0..inf:3"] {
-        let message = fails(path, &format!("bandwidth glossy.ron --sweep {sweep}"), 2);
+        let message = fails(path, format!("bandwidth glossy.ron --sweep {sweep}"), 2);
         assert!(message.contains("PATH=A..B:N"), "{message}");
     }
-    let mut left: Vec<String> = fs::read_dir(path)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    left.sort();
-    assert_eq!(left, ["glossy.ron", "small.ron"]);
+    assert!(files(path).keys().eq(["glossy.ron", "small.ron"]));
     fails(path, "bandwidth glossy.ron --csv absent/b.csv", 3);
 }

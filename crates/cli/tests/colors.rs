@@ -17,7 +17,7 @@ fn channels_share_their_photons() {
     let colors = colors.display();
     passes(
         path,
-        &format!("run {colors} {SHORT_RUN} --rgb --save photons --out out"),
+        format!("run {colors} {SHORT_RUN} --rgb --save photons --out out"),
     );
     for command in ["report out --out page.html", "diff out out/red"] {
         let words = command.split_whitespace();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{etendue, files, scene};
+use crate::common::{etendue, files, json, scene, untimed};
 use std::fs;
 use std::path::Path;
 use std::process::{Output, Stdio};
@@ -133,9 +133,7 @@ fn threads_do_not_change_a_byte() {
             &["--threads", threads, "--save", "photons", "--quiet"],
         );
         assert_eq!(output.status.code(), Some(0), "{output:?}");
-        let mut files = files(folder.path());
-        files.remove("timing.json");
-        files
+        untimed(folder.path())
     };
     let one = bytes("1");
     for threads in ["2", "4"] {
@@ -250,10 +248,7 @@ fn a_target_error_is_reached() {
     );
     let output = run("same", &["--photons", "2^21", "--quiet"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let [mut reached, mut same] = ["target", "same"].map(|out| files(&folder.path().join(out)));
-    for files in [&mut reached, &mut same] {
-        files.remove("timing.json");
-    }
+    let [reached, same] = ["target", "same"].map(|out| untimed(&folder.path().join(out)));
     assert!(reached == same);
 
     let too_many = ["--target-error", "0.001", "--photons", "2^20"];
@@ -301,9 +296,7 @@ fn saved_photons_are_the_ones_measured() {
     let header = String::from_utf8_lossy(&bytes[10..128]).into_owned();
     assert!(header.contains("'shape': (20000, 5)"), "{header}");
     assert_eq!(bytes.len(), 128 + 20_000 * 5 * 8);
-    let index: serde_json::Value =
-        serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
-            .unwrap();
+    let index = json(&folder.path().join("light/photons.json"));
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
     // For the light, ∫ L W is (0.1 + sin(0.2π)/2π)² metres² · (1/2)². Each of the two slopes
     // contributes a factor 1/2.

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common;
-use crate::common::{SCENE, call, json, loud, refused, sealed, told};
+use crate::common::{SCENE, call, json, loud, refused, sealed, small, told};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -11,8 +11,7 @@ use tempfile::TempDir;
 /// Returns a folder with the small scene, with enough photons for a verdict, and several runs of
 /// this scene, each in its own folder.
 fn runs(each: &[&str]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    let folder = small();
     for arguments in each {
         let output = call(
             folder.path(),

@@ -3,19 +3,18 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common;
-use crate::common::etendue;
+use crate::common::told;
 use std::fs;
 
 /// Returns the drawing of a scene of the repository, as SVG.
 fn drawing(scene: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
-    let mut command = etendue();
-    command.current_dir(folder.path()).arg("check");
-    command
-        .arg(common::scene(&format!("{scene}.ron")))
-        .args(["--draw", "a.svg"]);
-    let output = command.output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let scene = common::scene(&format!("{scene}.ron"));
+    told(
+        folder.path(),
+        format!("check {} --draw a.svg", scene.display()),
+        0,
+    );
     fs::read_to_string(folder.path().join("a.svg")).unwrap()
 }
 

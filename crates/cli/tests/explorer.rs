@@ -50,7 +50,7 @@ fn numbers_are_those_of_the_saved_scene() {
         let setup = Setup::of_fragment(text);
         let name = format!("scene{i}");
         fs::write(folder.path().join(format!("{name}.ron")), scene(&setup)).unwrap();
-        passes(folder.path(), &format!("predict {name}.ron --out {name}"));
+        passes(folder.path(), format!("predict {name}.ron --out {name}"));
         for plane in PathPlace::all(&setup) {
             let command = predicted(&folder.path().join(&name), plane);
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));

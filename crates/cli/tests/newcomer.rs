@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, etendue, loud, told};
+use crate::common::{etendue, loud, small, told};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -17,12 +17,12 @@ fn each_first_scene_is_sound() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     for name in ["blockers", "travel", "mirror", "glossy", "curved"] {
-        let said = told(path, &format!("new {name}"), 0);
+        let said = told(path, format!("new {name}"), 0);
         assert!(
             said.ends_with(&format!("next: etendue run {name}.ron\n")),
             "{said}"
         );
-        let said = told(path, &format!("check {name}.ron"), 0);
+        let said = told(path, format!("check {name}.ron"), 0);
         assert!(said.starts_with(&format!("{name}: sound")), "{said}");
     }
     // Without a name, the first scene; a scene of the user is not replaced.
@@ -36,9 +36,8 @@ fn each_first_scene_is_sound() {
 
 #[test]
 fn results_are_printed_as_json() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     let run = "run small.ron --photons 2^16 --json";
     let summary = tree(path, &format!("{run} --out a"), 0);
     let file = fs::read(path.join("a/summary.json")).unwrap();
@@ -72,9 +71,8 @@ fn results_are_printed_as_json() {
 /// JSON stays JSON if a folder's name has characters that a terminal must not get.
 #[test]
 fn characters_that_are_not_safe_are_escaped_in_json() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     told(path, "run small.ron --photons 2^16 --quiet --out a", 0);
     let name = "a\u{202e}b\u{e0001}";
     fs::rename(path.join("a"), path.join(name)).unwrap();
@@ -111,9 +109,8 @@ fn characters_that_turn_text_around_are_escaped_in_messages() {
 
 #[test]
 fn verdicts_are_coloured_where_the_user_wants_it() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     told(path, "run small.ron --photons 2^16 --quiet --out a", 0);
     let diff = |settings: &[(&str, &str)]| {
         let mut command = etendue();
@@ -140,7 +137,7 @@ fn shells_and_man_learn_the_command_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
-        let script = told(path, &format!("completions {shell}"), 0);
+        let script = told(path, format!("completions {shell}"), 0);
         assert!(script.contains("target-error"), "{shell}");
     }
     let page = told(path, "man", 0);

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use crate::common;
-use crate::common::{etendue, fails, files, json, loud, passes};
+use crate::common::{etendue, fails, files, json, loud, passes, untimed};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -53,7 +53,7 @@ fn a_scene_s_own_folder_may_be_that_of_its_results() {
     let folder = folder();
     for command in ["measure", "predict", "run"] {
         for _ in 0..2 {
-            passes(folder.path(), &format!("{command} s.ron --out ."));
+            passes(folder.path(), format!("{command} s.ron --out ."));
         }
     }
     let mesh = fs::read_to_string(folder.path().join("tri.obj")).unwrap();
@@ -262,11 +262,7 @@ fn a_move_that_was_cut_short_is_ended() {
             fs::write(place, bytes).unwrap();
         }
         passes(folder.path(), "run s.ron --out out --seed 3");
-        let mut found = files(&at("out"));
-        let mut wanted = files(&at("again"));
-        for timed in [&mut found, &mut wanted] {
-            timed.remove("timing.json");
-        }
+        let [found, wanted] = ["out", "again"].map(|out| untimed(&at(out)));
         assert!(found == wanted, "{moved} files had moved");
     }
 }

@@ -46,7 +46,7 @@ fn a_file_is_described_and_converted() {
         assert!(text.contains(part), "{part} not in: {text}");
     }
     for other in ["two.mcpl", "two.mcpl.gz", "two.npy", "again.tm25ray"] {
-        told(folder.path(), &format!("rays two.tm25ray --out {other}"), 0);
+        told(folder.path(), format!("rays two.tm25ray --out {other}"), 0);
         let set = read(&folder.path().join(other));
         assert_eq!(set.powers, [0.5, 0.25], "{other}");
     }

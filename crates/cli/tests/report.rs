@@ -2,16 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, json, loud, passes, sealed, told};
+use crate::common::{SCENE, call, json, loud, passes, sealed, small, told};
 use std::fs;
 use std::path::Path;
 
 /// Returns a folder with the runs `a` and `b`. Run `a` has the small scene. Run `b` has the same
 /// scene with another pitch, and with a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     fs::write(
         path.join("a<b>&.ron"),
         SCENE.replace("\"floor\"", "\"</script><!--\""),

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, etendue, files, json, passes};
+use crate::common::{call, etendue, files, json, passes, small, untimed};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
@@ -13,19 +13,15 @@ const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 
 /// Returns a folder with the scene and, in `whole`, the result of an uninterrupted run.
 fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
-    passes(folder.path(), &format!("{RUN} --out whole"));
+    let folder = small();
+    passes(folder.path(), format!("{RUN} --out whole"));
     folder
 }
 
 /// Checks that the result equals the result of the uninterrupted run, and that there are no other
 /// files in the folder.
 fn is_whole(folder: &Path, out: &str) {
-    let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
-    for files in [&mut found, &mut whole] {
-        files.remove("timing.json");
-    }
+    let [found, whole] = [out, "whole"].map(|name| untimed(&folder.join(name)));
     assert_eq!(
         found.keys().collect::<Vec<_>>(),
         whole.keys().collect::<Vec<_>>()
@@ -86,7 +82,7 @@ fn a_run_goes_on_where_its_time_was_up() {
     assert!(ended > 0, "the time was never up");
     is_whole(path, "parts");
     // A finished run prints its result again and does not change it.
-    passes(path, &format!("{RUN} --out parts --resume"));
+    passes(path, format!("{RUN} --out parts --resume"));
     is_whole(path, "parts");
 }
 
@@ -145,7 +141,7 @@ fn batches_of_another_run_are_not_taken() {
     let other = format!("{RUN} --out parts --resume --time 100ms --seed 9");
     let ended = call(path, &other).status.code();
     assert!(matches!(ended, Some(0 | 3)), "{ended:?}");
-    passes(path, &format!("{RUN} --out parts --resume"));
+    passes(path, format!("{RUN} --out parts --resume"));
     let seed = json(&path.join("parts/summary.json"))["seed"].clone();
     assert_eq!(seed, json(&path.join("whole/summary.json"))["seed"]);
     if ended == Some(3) {
@@ -215,9 +211,8 @@ fn parts(folder: &Path) -> u32 {
 
 #[test]
 fn time_is_up_within_a_batch() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     let mut kept = 0;
     for arguments in ["--time 1s", "--time 1s --resume", "--time 1s --resume"] {
         let (code, message) = ended(path, arguments);
@@ -244,9 +239,8 @@ fn time_is_up_within_a_batch() {
 /// later.
 #[test]
 fn a_killed_process_leaves_the_beginning_of_its_batch() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = small();
     let path = folder.path();
-    fs::write(path.join("small.ron"), SCENE).unwrap();
     let mut child = etendue()
         .current_dir(path)
         .args(LONG.split(' '))
@@ -278,9 +272,9 @@ fn batches_of_a_run_that_is_done_are_removed() {
     } else {
         panic!("the time was not up: {output:?}");
     }
-    passes(path, &format!("{RUN} --out parts --resume"));
+    passes(path, format!("{RUN} --out parts --resume"));
     fs::rename(path.join("batches"), path.join("parts/batches")).unwrap();
-    passes(path, &format!("{RUN} --out parts --resume"));
+    passes(path, format!("{RUN} --out parts --resume"));
     is_whole(path, "parts");
 }
 
@@ -301,7 +295,7 @@ fn batches_go_through_no_link() {
         } else {
             "--seed 3"
         };
-        passes(path, &format!("{RUN} --out {out} {resume}"));
+        passes(path, format!("{RUN} --out {out} {resume}"));
         let left = files(&path.join("elsewhere"));
         assert_eq!(left.keys().collect::<Vec<_>>(), ["mine/file"]);
     }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, etendue, files};
+use crate::common::{SCENE, etendue, files, small};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
@@ -105,8 +105,7 @@ echo 42
 
 #[test]
 fn more_parts_than_batches_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    let folder = small();
     let output = etendue()
         .current_dir(&folder)
         .args(["split", "small.ron", "--parts", "65"])

@@ -2,19 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, fails, files, json, passes, refused};
+use crate::common::{fails, files, json, passes, refused, small};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 const PITCH: &str = "sweep small.ron --photons 4096 --out s --set blockers.0.pitch=0.05..0.2:4";
-
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
-    folder
-}
 
 /// Returns the rows of a table, each by column name.
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
@@ -24,7 +18,7 @@ fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
 
 #[test]
 fn the_table_has_what_a_run_says_of_each_point() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path();
     passes(path, PITCH);
     let rows = rows(&path.join("s/sweep.csv"));
@@ -63,7 +57,7 @@ fn the_table_has_what_a_run_says_of_each_point() {
 
 #[test]
 fn points_have_one_seed_where_that_is_asked_for() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path();
     let seeds = |arguments: &str| -> BTreeSet<String> {
         let line = PITCH.replace("--out s", &format!("--out s --force {arguments}"));
@@ -93,7 +87,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
 #[test]
 fn points_go_through_no_link() {
     for name in ["s/points", "s/points/POINT"] {
-        let folder = folder();
+        let folder = small();
         let path = folder.path();
         passes(path, PITCH);
         let point = json(&path.join("s/sweep.json"))["points"][0]
@@ -115,7 +109,7 @@ fn points_go_through_no_link() {
 
 #[test]
 fn a_sweep_goes_on_from_what_is_there() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path();
     passes(path, PITCH);
     let whole = files(&path.join("s"));
@@ -144,11 +138,11 @@ fn a_sweep_goes_on_from_what_is_there() {
 
 #[test]
 fn a_grid_and_fields_in_step() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path();
     let both = "sweep small.ron --photons 4096 --set blockers.0.pitch=0.1,0.2 --set blockers.0.fill=0.3..0.6:2";
-    passes(path, &format!("{both} --out grid"));
-    passes(path, &format!("{both} --together --out step"));
+    passes(path, format!("{both} --out grid"));
+    passes(path, format!("{both} --together --out step"));
     let points = |name: &str| json(&path.join(name))["points"].as_array().unwrap().clone();
     let (grid, step) = (points("grid/sweep.json"), points("step/sweep.json"));
     assert_eq!(grid.len(), 4);
@@ -162,7 +156,7 @@ fn a_grid_and_fields_in_step() {
 
 #[test]
 fn bad_sweeps_are_refused() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path();
     let set = "sweep small.ron --out out --set";
     for (arguments, parts) in [
@@ -189,7 +183,7 @@ fn bad_sweeps_are_refused() {
     ] {
         refused(path, &arguments, parts);
     }
-    let message = fails(path, &format!("{set} blockers.0.fill=0.1..0.9"), 2);
+    let message = fails(path, format!("{set} blockers.0.fill=0.1..0.9"), 2);
     assert!(message.contains("PATH=A..B:N"), "{message}");
     for (twice, field) in [
         (
@@ -205,7 +199,7 @@ fn bad_sweeps_are_refused() {
             "pitch=0.05-0.4:3 is one value",
         ),
     ] {
-        let message = fails(path, &format!("{set} {twice}"), 2);
+        let message = fails(path, format!("{set} {twice}"), 2);
         assert!(message.contains(field), "{message}");
     }
     // A sweep of another scene, or of other fields, does not replace this sweep.
@@ -219,5 +213,5 @@ fn bad_sweeps_are_refused() {
         message.contains("holds a sweep of blockers.0.pitch"),
         "{message}"
     );
-    passes(path, &format!("{other} --force"));
+    passes(path, format!("{other} --force"));
 }

@@ -200,7 +200,7 @@ fn bad_arguments_are_refused() {
         ("--frequencies 40", "from 2 to 16"),
         ("--shifts 1", "from 10 to 1000000"),
     ] {
-        let message = fails(path, &format!("variance {spot} {plane} {arguments}"), 2);
+        let message = fails(path, format!("variance {spot} {plane} {arguments}"), 2);
         assert!(message.contains(part), "{arguments}: {message}");
     }
     refused(

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, array, fails, files, json, passes, refused, scene, told};
+use crate::common::{SCENE, array, fails, files, json, passes, refused, scene, told, untimed};
 use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
@@ -79,11 +79,7 @@ fn a_mesh_goes_through_all_stages() {
     // The files of the stages contain all inputs, so the original meshes are not needed.
     fs::remove_dir_all(path.join("meshes")).unwrap();
     passes(path, "compare --measured m --predicted p --out compared");
-    let [run, compared] = ["run", "compared"].map(|result| {
-        let mut files = files(&path.join(result));
-        assert!(files.remove("timing.json").is_some());
-        files
-    });
+    let [run, compared] = ["run", "compared"].map(|result| untimed(&path.join(result)));
     assert!(run == compared);
     let summary = json(&path.join("run/summary.json"));
     assert_eq!(summary["planes"][1]["class"], "reference");

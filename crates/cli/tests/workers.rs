@@ -3,11 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{SCENE, call, files};
+use crate::common::{call, files, small};
 use etendue::command_of_workers;
 use etendue_pipeline::Workers;
 use std::ffi::OsString;
-use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -109,12 +108,6 @@ fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
     sent
 }
 
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
-    folder
-}
-
 #[test]
 fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
     for line in [
@@ -125,7 +118,7 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         // The next piece of work goes to the first process that is ready. On a busy machine, some
         // processes may get no work; the test then repeats the run.
         let helped = (0..20).any(|_| {
-            let sent = same_files(folder().path(), line, 3);
+            let sent = same_files(small().path(), line, 3);
             // A process reports its presence with one message, and answers each order with one
             // message.
             sent.iter().sum::<usize>() > 2
@@ -136,7 +129,7 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
 
 #[test]
 fn processes_with_other_scenes_are_refused() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path().join("small.ron").display().to_string();
     let out = folder.path().join("out").display().to_string();
     // With this number of photons, the second process reports before the first process has
@@ -151,7 +144,7 @@ fn processes_with_other_scenes_are_refused() {
 
 #[test]
 fn what_is_not_for_several_is_refused() {
-    let folder = folder();
+    let folder = small();
     let path = folder.path().join("small.ron").display().to_string();
     let lines = [
         format!("etendue check {path}"),

@@ -127,7 +127,7 @@ fn pictures_and_probes_have_the_same_bytes_on_any_threads() {
     for threads in [1, 2] {
         told(
             path,
-            &format!("render room.xml --samples 4 --threads {threads} --out r{threads}"),
+            format!("render room.xml --samples 4 --threads {threads} --out r{threads}"),
             0,
         );
         let probe = "probe room.xml --pixel 12,8 --rays 2^12 --photons 2^13 --quiet";
@@ -137,7 +137,7 @@ fn pictures_and_probes_have_the_same_bytes_on_any_threads() {
         );
         told(
             path,
-            &format!("probe room.xml --map 3x2 --rays 2^10 --threads {threads} --out m{threads}"),
+            format!("probe room.xml --map 3x2 --rays 2^10 --threads {threads} --out m{threads}"),
             0,
         );
     }
@@ -342,7 +342,7 @@ fn what_is_asked_must_be_there() {
     assert!(message.contains("--sky"), "{message}");
     told(
         path,
-        &format!("render plane.obj {view} --sky 1 --out sky"),
+        format!("render plane.obj {view} --sky 1 --out sky"),
         0,
     );
 }

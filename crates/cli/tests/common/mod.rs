@@ -49,6 +49,14 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
+/// Returns all files of a result except for its times, which no two runs share.
+#[track_caller]
+pub fn untimed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = files(folder);
+    assert!(files.remove("timing.json").is_some());
+    files
+}
+
 /// A small scene with many numbers that inexact decimal conversion would change. Two runs of one
 /// seed share photons, because they use nets; lattices depend on the scene and on the number of
 /// photons.
@@ -65,11 +73,17 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557, sampling: Net),
 )"#;
 
+/// Returns a folder with the small scene, `small.ron`.
+pub fn small() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    folder
+}
+
 /// Returns a folder with the scene `small.ron`, its prediction `p`, and its measurement in two
 /// parts: `a` has the batches 0..20, and `b` has 20..64.
 pub fn stages() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    let folder = small();
     for arguments in [
         "measure small.ron --out a --batches 0..20 --threads 1",
         "measure small.ron --out b --batches 20..64 --threads 3",
