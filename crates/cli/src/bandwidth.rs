@@ -26,7 +26,6 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
     let at = |point: &SweepPoint| one_light(args, point);
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
-    let measuring = args.measure.then_some(args.photons.method);
     if args.measure {
         for scene in &scenes {
             let theories = Applicability::of_planes(scene);
@@ -40,25 +39,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         .collect();
     let claim = |path: &PathBuf| OutputFile::claim(path, args.work.force.force, &inputs);
     let file = args.csv.as_ref().map(claim).transpose()?;
-    let rows = on_threads(&args.work.threads, || {
-        let is_long = args.measure && scenes.len() > 1;
-        let bar = progress::steps(
-            "measuring",
-            scenes.len(),
-            "scenes",
-            args.work.quiet || !is_long,
-        );
-        let each = scenes.iter().zip(&points).map(|(scene, point)| {
-            bar.set_message(shown(point));
-            let terminal = Terminal::new(args.work.quiet || is_long);
-            let rows = bandwidths(scene, point, measuring, &terminal);
-            bar.inc(1);
-            rows
-        });
-        let rows: Result<Vec<_>, Failure> = each.collect();
-        bar.finish_and_clear();
-        rows.map(|rows| rows.concat())
-    })?;
+    let rows = on_threads(&args.work.threads, || measured_rows(args, &scenes, &points))?;
     if rows.is_empty() {
         return Err(Failure::bad_input(
             "no plane of this scene can be used; allowed: planes orthogonal to the central ray, for light that leaves a smooth surface with a BRDF",
@@ -86,6 +67,32 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         say(&format!("warning: {warning}"));
     }
     Ok(0)
+}
+
+/// Returns the rows of all scenes; progress is shown scene by scene if there are several.
+fn measured_rows(
+    args: &BandwidthArgs,
+    scenes: &[Scene],
+    points: &[SweepPoint],
+) -> Result<Vec<BandwidthRow>, Failure> {
+    let measuring = args.measure.then_some(args.photons.method);
+    let is_long = args.measure && scenes.len() > 1;
+    let bar = progress::steps(
+        "measuring",
+        scenes.len(),
+        "scenes",
+        args.work.quiet || !is_long,
+    );
+    let each = scenes.iter().zip(points).map(|(scene, point)| {
+        bar.set_message(shown(point));
+        let terminal = Terminal::new(args.work.quiet || is_long);
+        let rows = bandwidths(scene, point, measuring, &terminal);
+        bar.inc(1);
+        rows
+    });
+    let rows: Result<Vec<_>, Failure> = each.collect();
+    bar.finish_and_clear();
+    rows.map(|rows| rows.concat())
 }
 
 fn header(args: &BandwidthArgs) -> Vec<String> {
