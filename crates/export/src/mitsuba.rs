@@ -20,6 +20,7 @@ use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
 use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
+use planes::id;
 use xml::{Xml, diffuse};
 
 /// A part of a scene that Mitsuba cannot represent.
@@ -253,16 +254,6 @@ impl Writer {
         let file = format!("{id}.ply");
         self.xml.mesh(id, &file, looks);
         self.files.push((file, bytes));
-    }
-}
-
-/// Returns the identifier of an object. Names in the scene file may contain any character,
-/// identifiers may not.
-fn id(object: Object) -> String {
-    match object {
-        Object::Surface(i) => format!("surface_{i}"),
-        Object::Mesh(i) => format!("mesh_{i}"),
-        Object::Patch(i) => format!("smooth_{i}"),
     }
 }
 

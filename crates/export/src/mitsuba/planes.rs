@@ -1,8 +1,7 @@
 //! The virtual planes, for a script that records light fields with Mitsuba.
 
-use super::id;
 use etendue_field::{Frame, Orientation, Quantity, Side, SliceGrid, Window};
-use etendue_scene::{Hit, Scene};
+use etendue_scene::{Hit, Object, Scene};
 use serde::Serialize;
 
 /// The content of `planes.json`.
@@ -67,4 +66,14 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
     let mut bytes = serde_json::to_vec_pretty(&file).unwrap_or_default();
     bytes.push(b'\n');
     bytes
+}
+
+/// Returns the identifier of an object. Names in the scene file may contain any character,
+/// identifiers may not.
+pub(super) fn id(object: Object) -> String {
+    match object {
+        Object::Surface(i) => format!("surface_{i}"),
+        Object::Mesh(i) => format!("mesh_{i}"),
+        Object::Patch(i) => format!("smooth_{i}"),
+    }
 }

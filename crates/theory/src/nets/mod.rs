@@ -90,25 +90,6 @@ pub(crate) trait Integrand: Sync {
     fn nodes(&self, at: &[f64; DIMENSIONS], wanted: &[bool], nodes: &mut [RayNode]);
 }
 
-/// Writes the difference between two rays of increased and decreased parameters, `apart` from each
-/// other, to two nodes. A ray that does not arrive contributes nothing, and rays with the same
-/// coordinates become one.
-pub(crate) fn difference(sides: [Option<RayNode>; 2], apart: f64, nodes: &mut [RayNode]) {
-    if let [Some(above), Some(below)] = sides
-        && above.z.map(f64::to_bits) == below.z.map(f64::to_bits)
-    {
-        let weight = (above.weight - below.weight) / apart;
-        nodes[0] = RayNode { weight, ..above };
-        return;
-    }
-    for ((side, sign), node) in sides.into_iter().zip([1.0, -1.0]).zip(nodes) {
-        if let Some(RayNode { z, weight }) = side {
-            let weight = sign * weight / apart;
-            *node = RayNode { z, weight };
-        }
-    }
-}
-
 impl Predicted {
     /// Returns the prediction of zero, with a number of derivatives, for the case in which no ray in
     /// any net carries light.

@@ -34,11 +34,11 @@ pub(super) trait DrawnField: Sync {
 pub(super) struct Differences<'a, F> {
     field: &'a F,
     /// For each parameter, the difference between its two values, and the fields with them.
-    moved: Vec<(f64, Sides<'a, F>)>,
+    moved: Vec<(f64, ShiftedFields<'a, F>)>,
 }
 
 /// The fields with a parameter increased and decreased.
-enum Sides<'a, F> {
+enum ShiftedFields<'a, F> {
     /// The parameter belongs to a mask. It moves no ray, and changes what passes of each.
     Masks([PreparedPath<'a>; 2]),
     /// All rays are drawn anew.
@@ -57,11 +57,13 @@ impl<'a, F: DrawnField> Differences<'a, F> {
         let sides = |moved: &'a ShiftedModels<Observed>| {
             let [above, below] = &moved.sides;
             if moved.moves_mask {
-                return Sides::Masks([above, below].map(|view| PreparedPath::new(&view.system)));
+                return ShiftedFields::Masks(
+                    [above, below].map(|view| PreparedPath::new(&view.system)),
+                );
             }
             match (of(above), of(below)) {
-                (Some(above), Some(below)) => Sides::Rays([above, below]),
-                _ => Sides::Dark,
+                (Some(above), Some(below)) => ShiftedFields::Rays([above, below]),
+                _ => ShiftedFields::Dark,
             }
         };
         Self {
@@ -99,7 +101,7 @@ impl<F: DrawnField> Integrand for Differences<'_, F> {
         if self.field.has_chain()
             && let Some((true, nodes)) = fields.next()
         {
-            nets::difference(self.field.beside_chain(at), 1.0, nodes);
+            difference(self.field.beside_chain(at), 1.0, nodes);
         }
         let fields = self.moved.iter().zip(fields);
         let fields = fields.filter_map(|(one, (wanted, nodes))| wanted.then_some((one, nodes)));
@@ -107,7 +109,7 @@ impl<F: DrawnField> Integrand for Differences<'_, F> {
         let mut unmasked = None;
         for ((apart, sides), nodes) in fields {
             let sides = match sides {
-                Sides::Masks(paths) => {
+                ShiftedFields::Masks(paths) => {
                     let (ray, crossings) = unmasked.get_or_insert_with(|| {
                         let mut crossings = MaskCrossings::default();
                         let ray = self.field.draw(at, &mut crossings.record());
@@ -119,12 +121,31 @@ impl<F: DrawnField> Integrand for Differences<'_, F> {
                         Some(RayNode { z, weight })
                     })
                 }
-                Sides::Rays(sides) => sides
+                ShiftedFields::Rays(sides) => sides
                     .each_ref()
                     .map(|side| side.draw(at, &mut side.path().at_mask())),
-                Sides::Dark => [None; 2],
+                ShiftedFields::Dark => [None; 2],
             };
-            nets::difference(sides, *apart, nodes);
+            difference(sides, *apart, nodes);
+        }
+    }
+}
+
+/// Writes the difference between two rays of increased and decreased parameters, `apart` from each
+/// other, to two nodes. A ray that does not arrive contributes nothing, and rays with the same
+/// coordinates become one.
+fn difference(sides: [Option<RayNode>; 2], apart: f64, nodes: &mut [RayNode]) {
+    if let [Some(above), Some(below)] = sides
+        && above.z.map(f64::to_bits) == below.z.map(f64::to_bits)
+    {
+        let weight = (above.weight - below.weight) / apart;
+        nodes[0] = RayNode { weight, ..above };
+        return;
+    }
+    for ((side, sign), node) in sides.into_iter().zip([1.0, -1.0]).zip(nodes) {
+        if let Some(RayNode { z, weight }) = side {
+            let weight = sign * weight / apart;
+            *node = RayNode { z, weight };
         }
     }
 }
