@@ -118,25 +118,8 @@ impl Model for Observed {
             Parameter::Curvature(i, axis) => {
                 self.reshape(i, |patch, _| change_curvature(patch, axis, new))?;
             }
-            Parameter::SurfaceSize(i, axis) => self.reshape(i, |patch, extent| {
-                match extent {
-                    PatchExtent::Whole => patch.aperture = new(patch.aperture),
-                    PatchExtent::Rectangle(size) => {
-                        size[axis] = new(size[axis]);
-                        patch.aperture = 0.5 * libm::hypot(size[0], size[1]);
-                    }
-                }
-                Some(())
-            })?,
-            Parameter::SurfacePosition(i, axis) => {
-                let hit = self.system.surfaces.get(i)?.hit;
-                self.reshape(i, |Patch { frame, .. }, _| {
-                    let along = [frame.x, frame.y][axis];
-                    let position = (frame.origin - hit).dot(along);
-                    frame.origin += (new(position) - position) * along;
-                    Some(())
-                })?;
-            }
+            Parameter::SurfaceSize(i, axis) => self.resize(i, axis, new)?,
+            Parameter::SurfacePosition(i, axis) => self.move_sideways(i, axis, new)?,
             Parameter::Index(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
                 Interaction::Specular(Specular::Refraction { front, back }) => {
                     let denser = if *front > *back { front } else { back };
@@ -297,6 +280,31 @@ impl Observed {
             patch.frame.origin += by;
         }
         Some(())
+    }
+
+    /// Changes the aperture of surface `i`, or its side along an axis.
+    fn resize(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
+        self.reshape(i, |patch, extent| {
+            match extent {
+                PatchExtent::Whole => patch.aperture = new(patch.aperture),
+                PatchExtent::Rectangle(size) => {
+                    size[axis] = new(size[axis]);
+                    patch.aperture = 0.5 * libm::hypot(size[0], size[1]);
+                }
+            }
+            Some(())
+        })
+    }
+
+    /// Changes the position of surface `i` along X or Y of its patch.
+    fn move_sideways(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
+        let hit = self.system.surfaces.get(i)?.hit;
+        self.reshape(i, |Patch { frame, .. }, _| {
+            let along = [frame.x, frame.y][axis];
+            let position = (frame.origin - hit).dot(along);
+            frame.origin += (new(position) - position) * along;
+            Some(())
+        })
     }
 
     /// Changes the patch and the extent of surface `i`.
