@@ -68,7 +68,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "theory",
         15390,
-        15509,
+        15518,
         "derivatives use the rays of the prediction for masks, and stop when accurate; surfaces have positions",
     ),
     (

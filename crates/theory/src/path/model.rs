@@ -428,17 +428,6 @@ fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
 }
 
 impl PathSurface {
-    /// Returns the parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
-    fn rim(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
-        let [sizes, positions] = match self.extent {
-            PatchExtent::Rectangle(_) => [2, 2],
-            PatchExtent::Whole if self.occludes => [1, 2],
-            PatchExtent::Whole => [0, 0],
-        };
-        let sizes = (0..sizes).map(move |axis| Parameter::SurfaceSize(i, axis));
-        sizes.chain((0..positions).map(move |axis| Parameter::SurfacePosition(i, axis)))
-    }
-
     /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
     /// is the albedo of the first BRDF.
     fn albedo_mut(&mut self) -> Option<&mut f64> {

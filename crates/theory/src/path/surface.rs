@@ -2,6 +2,7 @@
 
 use super::{Interaction, PatchExtent, PathSurface};
 use crate::obstacle::{LegRay, normal};
+use crate::parameter::Parameter;
 use crate::path::rays::bent;
 use crate::path::scattering::{brdf, kernel, narrowest};
 use etendue_field::{Brdf, Fresnel, Lobe, Specular};
@@ -22,6 +23,17 @@ impl PathSurface {
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.event().is_none()
+    }
+
+    /// Returns the parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
+    pub(super) fn rim(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
+        let [sizes, positions] = match self.extent {
+            PatchExtent::Rectangle(_) => [2, 2],
+            PatchExtent::Whole if self.occludes => [1, 2],
+            PatchExtent::Whole => [0, 0],
+        };
+        let sizes = (0..sizes).map(move |axis| Parameter::SurfaceSize(i, axis));
+        sizes.chain((0..positions).map(move |axis| Parameter::SurfacePosition(i, axis)))
     }
 
     /// Returns the distances beyond `start` at which a ray meets the surface.
