@@ -6,6 +6,7 @@ use etendue_report::page::{NAME, page, stored_data};
 use etendue_store::file_seal::SealKind;
 use etendue_store::output::OutputFile;
 use etendue_store::{Failure, SUMMARY};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Runs `etendue report`; returns the exit code.
@@ -32,9 +33,10 @@ pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), 
             .map(|name| name.to_string_lossy().into_owned())
     };
     let names: Vec<String> = folders.iter().filter_map(folder).collect();
-    let file = claim(folders, out, force)?;
     let parent = out.parent().filter(|path| *path != Path::new(""));
     let parent = parent.unwrap_or(Path::new("."));
+    fs::create_dir_all(parent).map_err(|e| Failure::write(out, e))?;
+    let file = claim(folders, out, force)?;
     let beside = folders.iter().map(|folder| address(folder, parent));
     let blocks: Vec<_> = beside.zip(blocks).collect();
     file.write(page(&names.join(", "), &blocks).as_bytes())

@@ -64,8 +64,8 @@ fn a_page_holds_what_its_run_found() {
 fn runs_stand_side_by_side() {
     let folder = runs();
     let path = folder.path();
-    told(path, "report a b --out both.html", 0);
-    let runs = data(&path.join("both.html"));
+    told(path, "report a b --out new/folder/both.html", 0);
+    let runs = data(&path.join("new/folder/both.html"));
     let alone: Vec<_> = ["a", "b"]
         .map(|name| data(&path.join(name).join("report.html")))
         .concat();

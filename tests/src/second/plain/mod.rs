@@ -405,9 +405,17 @@ fn row(fault: Option<usize>, drawn: u64, pairs: &[(u64, Pair)]) -> Row {
     let rms = (squares.sum::<f64>() / resolved.len() as f64).sqrt();
     let sizes = resolved.iter().map(|(_, pair)| pair.deviation().abs());
     let largest = sizes.fold(0.0, f64::max);
-    let check = match fault {
-        None => Check::none("apart", far.len()),
-        Some(_) => Check::fact("seen", !far.is_empty(), "a fault must be found"),
+    let checks = match fault {
+        None => {
+            let is_known =
+                Check::fact("resolved", !resolved.is_empty(), "a scene must be resolved");
+            vec![Check::none("apart", far.len()), is_known]
+        }
+        Some(_) => vec![Check::fact(
+            "seen",
+            !far.is_empty(),
+            "a fault must be found",
+        )],
     };
     let cells = vec![
         fault.map_or("none", |fault| FAULTS[fault]).to_owned(),
@@ -419,7 +427,7 @@ fn row(fault: Option<usize>, drawn: u64, pairs: &[(u64, Pair)]) -> Row {
         far.len().to_string(),
         far.iter().take(8).cloned().collect::<Vec<_>>().join(", "),
     ];
-    Row::new(cells, vec![check])
+    Row::new(cells, checks)
 }
 
 fn section(options: &PlainOptions, rows: Vec<Row>) -> ReportSection {
