@@ -266,6 +266,15 @@ mod tests {
         assert!(!First.check(planted.as_ref()).passes(), "{planted:?}");
     }
 
+    /// Masks do not shrink, so a disc on the central ray covers all light of a small neighbourhood.
+    #[test]
+    fn a_covered_light_has_no_order() {
+        let disc = "[Shapes(name: \"disc\", center: (0, 0, 0.2), shapes: [Disc(center: (0, 0), radius: 0.02)])]";
+        let scene = stored("concave_oblique", &[("blockers", disc.to_owned())]);
+        let found = found(&scene, "curvature", None).unwrap();
+        assert!(found.order.is_none() && found.steps[4].is_dark());
+    }
+
     #[test]
     fn every_scene_of_the_table_has_rows() {
         assert_eq!(left_out(), 0);

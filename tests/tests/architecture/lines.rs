@@ -79,7 +79,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
     ("worlds", 22_217, 21_904, ""),
-    ("tests of all kinds", 69_203, 67_630, ""),
+    ("tests of all kinds", 69_203, 67_640, ""),
 ];
 
 /// A crate may be smaller than its row says by one line in this many, so that not every change needs
