@@ -7,7 +7,7 @@ use crate::progress;
 use crate::threads::on_threads;
 use etendue_pipeline::{limits, load};
 use etendue_predict::{Applicability, Convergence, converge as shrink, seconds};
-use etendue_report::table::{aligned, below_header};
+use etendue_report::table::aligned;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 
@@ -59,13 +59,10 @@ fn shrunk(scene: &Scene, theories: &[Applicability]) -> Vec<Convergence> {
 
 fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
     let shares = planes[0].steps.iter();
-    let shares: Vec<String> = shares.map(|step| format!("e = {}", step.share)).collect();
-    let shares = shares.iter().map(String::as_str);
-    let header: Vec<&str> = ["plane"]
-        .into_iter()
-        .chain(shares)
-        .chain(["order"])
-        .collect();
+    let shares = shares.map(|step| format!("e = {}", step.share));
+    let mut header = vec!["plane".to_owned()];
+    header.extend(shares);
+    header.push("order".to_owned());
     let row = |plane: &Convergence| {
         let mut row = vec![plane.plane.clone()];
         row.extend(plane.steps.iter().map(|step| match step.error {
@@ -75,5 +72,7 @@ fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
         row.push(plane.order.map_or("–".to_owned(), |n| format!("{n:.2}")));
         row
     };
-    below_header(&header, planes.iter().map(row))
+    std::iter::once(header)
+        .chain(planes.iter().map(row))
+        .collect()
 }

@@ -330,8 +330,8 @@ fn saved_photons_are_the_ones_measured() {
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 
-/// `first_scenes.txt` has more mistakes. Bad input leads to one clear message and the correct exit code; no file is written and the
-/// program does not panic.
+/// `first_scenes.txt` has more mistakes. Bad input leads to one clear message and the correct exit
+/// code; no file is written and the program does not panic.
 #[test]
 fn bad_input_is_refused_with_a_message() {
     let folder = tempfile::tempdir().unwrap();

@@ -27,8 +27,8 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Returns the colors of a quantity whose largest value is `peak`. Scales in decibels have their
-    /// own label, `decibels`.
+    /// Returns the colors of a quantity whose largest value is `peak`. Scales in decibels have
+    /// their own label, `decibels`.
     pub(crate) fn shading(
         self,
         colors: Colors,

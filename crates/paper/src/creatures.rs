@@ -107,8 +107,8 @@ fn plain<'a>(
 }
 
 impl CreatureScene {
-    /// Draws pictures side by side, with a title and a note. All pictures share the range of colors,
-    /// unless the scale is in decibels.
+    /// Draws pictures side by side, with a title and a note. All pictures share the range of
+    /// colors, unless the scale is in decibels.
     fn side_by_side(
         &self,
         style: &Style,

@@ -15,10 +15,10 @@ pub(crate) const DESCRIPTION: &str = "columns.csv";
 /// The columns of [`DESCRIPTION`].
 const HEADER: [&str; 5] = ["file", "name", "unit", "axes", "meaning"];
 
-/// The unit, the axes and the meaning of what a figure stores: the arrays of a `plane`; each `row` of
-/// pictures that are not arrays of a scene, which has the name of its quantity if it has no name;
-/// each `column` of `figure.csv`, of which the one without a name is the quantity that the vertical
-/// axis shows.
+/// The unit, the axes and the meaning of what a figure stores: the arrays of a `plane`; each `row`
+/// of pictures that are not arrays of a scene, which has the name of its quantity if it has no
+/// name; each `column` of `figure.csv`, of which the one without a name is the quantity that the
+/// vertical axis shows.
 const WORDS: &str = include_str!("words.csv");
 
 /// Returns the unit, the axes and the meaning of an array, a row or a column; empty if it has none.

@@ -103,13 +103,13 @@ mod tests {
     fn every_field_that_differs_is_named() {
         let a = json!({
             "light": {"Disc": {"radius": 1}}, "blockers": [{"Bars": {"pitch": 0.12, "fill": 0.5}}],
-            "planes": [{"at": {"After": "stop"}}], "x": {"Hann": 0.3}, "mask": "m".repeat(50), "run": null,
-            "inputs": {"Wall.png": "a"},
+            "planes": [{"at": {"After": "stop"}}], "x": {"Hann": 0.3}, "mask": "m".repeat(50),
+            "run": null, "inputs": {"Wall.png": "a"},
         });
         let b = json!({
             "light": {"Beam": {"waist": 2}}, "blockers": [{"Bars": {"pitch": 0.1, "fill": 0.5}}, 7],
-            "planes": [{"at": "Emission"}, {"Plain": {}}], "x": {"Hann": 0.2}, "mask": 1, "run": {"seed": 1},
-            "inputs": {"Wall.png": "b"},
+            "planes": [{"at": "Emission"}, {"Plain": {}}], "x": {"Hann": 0.2}, "mask": 1,
+            "run": {"seed": 1}, "inputs": {"Wall.png": "b"},
         });
         let lines: Vec<String> = differences(&a, &b)
             .into_iter()

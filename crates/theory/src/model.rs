@@ -96,8 +96,8 @@ pub(crate) struct ShiftedModels<M> {
 const STEP: f64 = 1e-3;
 
 /// The step of a parameter of an edge in [`Model::step`], if rays are followed. It is large enough
-/// for some rays to cross the edge of a shadow that moves, and small enough to change phases by at most
-/// a third of a radian.
+/// for some rays to cross the edge of a shadow that moves, and small enough to change phases by at
+/// most a third of a radian.
 pub(crate) const STEPS_OF_EDGES: [f64; 2] = [5e-2, 0.05];
 
 /// The largest number of halvings of a step. Smaller steps of an edge would leave few rays between

@@ -1,6 +1,6 @@
 //! Rays of a leg, and the occluders beside the path.
 
-use etendue_field::{Frame, Patch};
+use etendue_field::{Frame, Patch, enclosing};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -156,11 +156,9 @@ pub(crate) struct BoundingSphere {
 impl BoundingSphere {
     /// Returns a sphere about points, of which there is at least one.
     pub(crate) fn new(points: &[DVec3]) -> Self {
-        let points = || points.iter();
-        let low = points().fold(DVec3::INFINITY, |low, point| low.min(*point));
-        let high = points().fold(DVec3::NEG_INFINITY, |high, point| high.max(*point));
+        let [low, high] = enclosing(points);
         let center = 0.5 * (low + high);
-        let radius = points().map(|point| point.distance(center));
+        let radius = points.iter().map(|point| point.distance(center));
         Self {
             center,
             radius: (1.0 + ROUNDING) * radius.fold(0.0, f64::max),
@@ -197,10 +195,8 @@ impl TriangleTree {
         let sphere = BoundingSphere::new(corners);
         let mut parts = Vec::new();
         if triangles.len() > UNDIVIDED {
-            let low = corners
-                .iter()
-                .fold(DVec3::INFINITY, |low, corner| low.min(*corner));
-            let axis = (sphere.center - low).max_position();
+            let [low, high] = enclosing(corners);
+            let axis = (high - low).max_position();
             let place = |[a, b, c]: &[DVec3; 3]| (*a + *b + *c)[axis];
             triangles.sort_by(|one, other| place(one).total_cmp(&place(other)));
             let rest = triangles.split_off(triangles.len() / 2);

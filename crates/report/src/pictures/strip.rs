@@ -77,8 +77,8 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// Returns the rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are shown,
-/// and `off_chain` has the distances from the chain if they are shown.
+/// Returns the rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are
+/// shown, and `off_chain` has the distances from the chain if they are shown.
 fn rows_of<'a>(
     along: &'a [PlaneOnPath<'_>],
     both: Option<&'a [BothSlices]>,

@@ -42,8 +42,8 @@ pub struct PathSystem {
     /// allowed.
     pub light: Light,
     /// Masks in planes across the first leg, in ascending order of distance. A mask attenuates
-    /// light on every leg that crosses it. It may stand behind the light, at a negative distance, or
-    /// beyond the first surface.
+    /// light on every leg that crosses it. It may stand behind the light, at a negative distance,
+    /// or beyond the first surface.
     pub masks: Vec<PathMask>,
     /// Occluders beside the path.
     pub obstacles: Vec<Obstacle>,

@@ -57,8 +57,8 @@ pub struct Look {
 }
 
 impl Camera {
-    /// Creates a camera without a lens at the point `from`, with the point `at` in the middle of its
-    /// picture, and `up` upwards in the picture. Returns `None` if these give no orientation.
+    /// Creates a camera without a lens at the point `from`, with the point `at` in the middle of
+    /// its picture, and `up` upwards in the picture. Returns `None` if these give no orientation.
     #[must_use]
     pub fn pinhole(
         [from, at, up]: [DVec3; 3],

@@ -48,7 +48,9 @@ pub(crate) fn predict(
     let budgets = [budget, of_pictures];
     let found = summed(&field, observed, way, over, budgets);
     let of = |view| ExactRays::new(view, over.0, way?.1);
-    match of(view) {
+    // Without parameters, no rays are prepared for their derivatives.
+    let own = if moved.is_empty() { None } else { of(view) };
+    match own {
         Some(own) => Differences::new(&own, moved, of).complete(found, over),
         None => Predicted {
             derivatives: vec![Slices::zeros(*over.1); moved.len()],
