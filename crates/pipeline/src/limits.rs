@@ -76,9 +76,10 @@ pub fn check_memory(
         predictions,
         comparison,
         meshes,
+        pictures,
     } = needed;
     Err(Failure::cannot_run(format!(
-        "{}: a run on {threads} needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
+        "{}: a run on {threads} needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes, {} for pictures; {} are available",
         scene.name,
         byte_size(needed.total()),
         byte_size(batches),
@@ -87,6 +88,7 @@ pub fn check_memory(
         byte_size(predictions),
         byte_size(comparison),
         byte_size(meshes),
+        byte_size(pictures),
         byte_size(available as f64)
     )))
 }

@@ -23,6 +23,8 @@ pub struct Memory {
     pub comparison: f64,
     /// Triangles and the hierarchies over them.
     pub meshes: f64,
+    /// Pictures while they are read.
+    pub pictures: f64,
 }
 
 /// Bytes of a complex number.
@@ -83,6 +85,7 @@ impl Memory {
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             // Lights at the same depth share their meshes.
             meshes: meshes(scene) * depths(scene) as f64,
+            pictures: scene.picture_bytes as f64,
         }
     }
 
@@ -95,8 +98,9 @@ impl Memory {
             predictions,
             comparison,
             meshes,
+            pictures,
         } = self;
-        PROGRAM + batches + threads + predictions + comparison + meshes
+        PROGRAM + batches + threads + predictions + comparison + meshes + pictures
     }
 }
 

@@ -7,8 +7,7 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::path::{
     Interaction, PatchExtent, PathMask, PathSurface, PathSystem, reflections,
 };
-use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane, TriangleTree};
-use std::sync::Arc;
+use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane};
 
 /// Returns a plane, the light, all masks and all surfaces of the path to it. Returns `None` where
 /// light comes from a ray file, where too many surfaces have scattered the light, or where some
@@ -234,8 +233,7 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
             },
             Object::Patch(i) => ObstacleForm::Patch(scene.patches[i].patch),
             Object::Mesh(i) => {
-                let triangles = scene.meshes[i].triangles.iter().copied().collect();
-                ObstacleForm::Mesh(Arc::new(TriangleTree::new(triangles)))
+                ObstacleForm::mesh(scene.meshes[i].triangles.iter().copied().collect())
             }
         },
         until: None,

@@ -50,6 +50,14 @@ impl Samples {
         }
     }
 
+    /// Returns the memory that reading the values takes, in bytes. OpenEXR channels are copied.
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Bytes(bytes) | Self::Words(bytes) => bytes.len(),
+            Self::Numbers(numbers) => 2 * size_of_val(numbers.as_slice()),
+        }
+    }
+
     /// Returns `curve` of all levels that a value may have, scaled to 1; none for numbers.
     fn levels(&self, curve: impl Fn(f64) -> f64) -> Vec<f64> {
         let all = |most: u16| (0..=most).map(move |n| f64::from(n) / f64::from(most));
@@ -123,24 +131,26 @@ impl Channels {
 ///
 /// An OpenEXR file gives the number `color` of the first layer with channels R, G and B, or the
 /// layer's channel Y, over the entire data window. A PNG file gives grey or colour of 8 or 16 bits,
-/// with levels scaled to 1 and without an inverse transfer curve; alpha is ignored.
+/// with levels scaled to 1 and without an inverse transfer curve; alpha is ignored. The second
+/// number is the memory that reading the picture took besides its numbers, in bytes.
 pub(crate) fn parse(
     file: &Path,
     bytes: &[u8],
     extensions: &[&str],
     color: Color,
     memory: u64,
-) -> Result<Raster, Fault> {
+) -> Result<(Raster, usize), Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
     let channels = read_channels(file, bytes, memory)?;
-    match channels.is_grey() {
+    let raster = match channels.is_grey() {
         true => channels.raster(|level| level, |rgb| rgb[0]),
         false => channels.raster(|level| level, |rgb| color.of(rgb)),
-    }
+    };
+    Ok((raster?, channels.samples.bytes()))
 }
 
 /// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in upper or lower case,

@@ -55,6 +55,7 @@ pub fn resolve(
         color: file.run.color,
         memory,
         inputs: BTreeMap::new(),
+        pictures: 0,
     }
     .scene(name, file);
     match scene {
@@ -78,6 +79,8 @@ struct Resolver<'a> {
     memory: u64,
     /// The BLAKE3 hashes of the files that were read, by the names of these files in the scene.
     inputs: BTreeMap<String, String>,
+    /// The memory to read all pictures, in bytes.
+    pictures: usize,
 }
 
 impl Resolver<'_> {
@@ -130,6 +133,7 @@ impl Resolver<'_> {
             patches,
             planes,
             inputs: std::mem::take(&mut self.inputs),
+            picture_bytes: self.pictures,
             run: RunSettings {
                 photons: file.run.photons,
                 seed: file.run.seed,

@@ -34,6 +34,8 @@ pub struct Scene {
     pub planes: Vec<VirtualPlane>,
     /// BLAKE3 hash of each mesh and picture, by the file's name in the scene.
     pub inputs: BTreeMap<String, String>,
+    /// The memory to read the pictures, in bytes.
+    pub picture_bytes: usize,
     /// The settings of the measurement.
     pub run: RunSettings,
 }

@@ -1,5 +1,6 @@
 //! Rays of a leg, and the occluders beside the path.
 
+use crate::parameter::New;
 use etendue_field::{Frame, Patch, enclosing};
 use glam::DVec3;
 use std::sync::Arc;
@@ -121,7 +122,12 @@ pub enum ObstacleForm {
     /// An opaque smooth surface.
     Patch(Patch),
     /// Opaque triangles, which changed copies of a path share.
-    Mesh(Arc<TriangleTree>),
+    Mesh {
+        /// The triangles before the shift.
+        triangles: Arc<TriangleTree>,
+        /// The shift of all triangles.
+        shift: DVec3,
+    },
 }
 
 /// Maximum relative rounding error of a distance.
@@ -141,8 +147,53 @@ impl Obstacle {
                 on_rectangle(frame, *size, ray).is_some_and(is_between)
             }
             ObstacleForm::Patch(patch) => ray.hits(patch).any(is_between),
-            ObstacleForm::Mesh(triangles) => triangles.stop(ray, length, &is_between),
+            ObstacleForm::Mesh { triangles, shift } => {
+                let point = ray.point - *shift;
+                triangles.stop(&LegRay { point, ..*ray }, length, &is_between)
+            }
         }
+    }
+}
+
+impl ObstacleForm {
+    /// Returns the form of triangles, of which there is at least one.
+    #[must_use]
+    pub fn mesh(triangles: Vec<[DVec3; 3]>) -> Self {
+        Self::Mesh {
+            triangles: Arc::new(TriangleTree::new(triangles)),
+            shift: DVec3::ZERO,
+        }
+    }
+
+    /// Returns the number of sizes: two for a rectangle, one for a patch, none for a mesh.
+    pub(crate) fn sizes(&self) -> usize {
+        match self {
+            Self::Rectangle { .. } => 2,
+            Self::Patch(_) => 1,
+            Self::Mesh { .. } => 0,
+        }
+    }
+
+    /// Changes the side along an axis, or the aperture.
+    pub(crate) fn resize(&mut self, axis: usize, new: New<'_>) -> Option<()> {
+        let size = match self {
+            Self::Rectangle { size, .. } => size.get_mut(axis)?,
+            Self::Patch(patch) => &mut patch.aperture,
+            Self::Mesh { .. } => return None,
+        };
+        *size = new(*size);
+        Some(())
+    }
+
+    /// Changes the position of the centre along an axis.
+    pub(crate) fn reposition(&mut self, axis: usize, new: New<'_>) {
+        let (origin, moved) = match self {
+            Self::Rectangle { frame, .. } | Self::Patch(Patch { frame, .. }) => {
+                (DVec3::ZERO, &mut frame.origin[axis])
+            }
+            Self::Mesh { triangles, shift } => (triangles.sphere.center, &mut shift[axis]),
+        };
+        *moved = new(origin[axis] + *moved) - origin[axis];
     }
 }
 
@@ -284,7 +335,7 @@ mod tests {
             ObstacleForm::Rectangle { frame, size },
             ObstacleForm::Patch(bowl(0.0)),
             ObstacleForm::Patch(bowl(-0.1)),
-            ObstacleForm::Mesh(Arc::new(TriangleTree::new(square))),
+            ObstacleForm::mesh(square),
         ];
         let beside = LegRay {
             point: RAY.point + 0.3 * DVec3::X,

@@ -49,6 +49,12 @@ pub enum Parameter {
     /// The position of the vertex of a surface along X (0) or Y (1) of its patch, from the point
     /// where the central ray meets the surface.
     SurfacePosition(usize, usize),
+    /// The side of an obstacle that is a rectangle along its X (0) or Y (1), or the aperture of an
+    /// obstacle that is a patch (0), with the index of the obstacle.
+    ObstacleSize(usize, usize),
+    /// The position of the centre or the vertex of an obstacle along X (0), Y (1) or D (2) of the
+    /// light's frame; for a mesh, it is the centre of the box that encloses it.
+    ObstaclePosition(usize, usize),
     /// A curvature of a patch, k₁ (0) or k₂ (1). Other curvatures of the patch change too if they
     /// are equal to this curvature. The patch's vertex does not move.
     Curvature(usize, usize),
@@ -102,7 +108,13 @@ impl Parameter {
     /// Checks whether the parameter places the rim of a surface, which light may not reach.
     #[must_use]
     pub fn is_of_rim(self) -> bool {
-        matches!(self, Self::SurfaceSize(..) | Self::SurfacePosition(..))
+        matches!(
+            self,
+            Self::SurfaceSize(..)
+                | Self::SurfacePosition(..)
+                | Self::ObstacleSize(..)
+                | Self::ObstaclePosition(..)
+        )
     }
 
     /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
@@ -122,6 +134,8 @@ impl Parameter {
             | Self::HalfPlaneEdge(..)
             | Self::SurfaceSize(..)
             | Self::SurfacePosition(..)
+            | Self::ObstacleSize(..)
+            | Self::ObstaclePosition(..)
             | Self::FocalLength(_) => "m",
         }
     }
@@ -133,6 +147,7 @@ impl Parameter {
             // The distance from the central ray tells nothing about how far an edge may move.
             Self::SourcePosition(_)
             | Self::SurfacePosition(..)
+            | Self::ObstaclePosition(..)
             | Self::BlockerPosition(..)
             | Self::HoleCorner(..)
             | Self::HalfPlaneEdge(..) => 1.0,
@@ -289,7 +304,15 @@ impl Parameter {
 }
 
 pub(crate) fn position(axis: usize, name: &str) -> String {
-    format!("position {} of {name}", ["x", "y"][axis])
+    format!("position {} of {name}", ["x", "y", "z"][axis])
+}
+
+/// Returns the name of a side or of the aperture of an object.
+pub(crate) fn size_of_rim(is_rectangle: bool, axis: usize, name: &str) -> String {
+    match is_rectangle {
+        true => format!("side {} of {name}", ["x", "y"][axis]),
+        false => format!("aperture of {name}"),
+    }
 }
 
 /// Returns the axes of the curvatures of a patch that are parameters; equal curvatures are a

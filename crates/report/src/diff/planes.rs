@@ -9,6 +9,9 @@ use ndarray::Array3;
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
+/// The word for slices in a list of what differs.
+pub(super) const SLICES: &str = "slices";
+
 /// A plane that at least one of two results has.
 #[derive(Debug)]
 pub(super) struct PlaneDiff {
@@ -116,7 +119,7 @@ impl Compared {
     pub(super) fn differing(&self, level: f64) -> Vec<String> {
         let mut differing = Vec::new();
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
-            differing.push("slices".to_owned());
+            differing.push(SLICES.to_owned());
         }
         let pulls = self.pulls().filter(|parameter| parameter.pull.1 < level);
         differing.extend(pulls.map(|parameter| parameter.name.clone()));

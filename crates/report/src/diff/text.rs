@@ -1,7 +1,7 @@
 //! Formats the output of `etendue diff`.
 
 use super::difference::{Diff, has_other_inputs, is_of_run};
-use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
+use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING, SLICES};
 use super::stored::{ResultIndex, StoredResult};
 use crate::table::{aligned, below_header, number, percent, undecided, with_unit};
 use etendue_compare::{Estimate, Verdict};
@@ -166,12 +166,20 @@ fn verdict(diff: &Diff) -> String {
             )
         }
         Verdict::Fail => {
+            let mut is_named = false;
             let differing = diff.planes.iter().filter_map(|plane| {
                 let what = plane.compared()?.differing(level);
+                is_named |= what.iter().any(|what| what != SLICES);
                 (!what.is_empty()).then(|| format!("{} at {}", what.join(", "), plane.name))
             });
             let differing = differing.collect::<Vec<String>>().join("; ");
-            format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e})")
+            // A result of few photons lacks parameters of edges behind surfaces.
+            let hint = if is_named || diff.scene.iter().all(is_of_run) {
+                ""
+            } else {
+                "; no parameter of both results differs, and results of more photons may have more"
+            };
+            format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e}){hint}")
         }
         Verdict::Undecided => {
             let planes = diff.planes.iter();

@@ -129,7 +129,9 @@ impl Resolver<'_> {
             let field = format!("{of}, {path:?}: {}", fault.field);
             self.faults.add_fault(Fault { field, ..fault });
         });
-        let raster = raster.ok()?;
+        let (raster, transient) = raster.ok()?;
+        // Levels, numbers, and a copy of the numbers that are scaled or searched for edges.
+        self.pictures += transient + 2 * size_of_val(raster.values());
         let mut values = raster.values().iter();
         if let Some(pixel) = values.position(|value| !(0.0..=most).contains(value)) {
             let [column, row] = [pixel % raster.width(), pixel / raster.width()];

@@ -23,6 +23,7 @@ mod prepared;
 pub mod rays;
 pub mod reflections;
 pub mod scattering;
+mod shrunk;
 mod surface;
 
 pub use chain::{PathChain, ScatteringSurface, chain, defect};

@@ -7,18 +7,19 @@ use super::{
 };
 use crate::model::{Model, Over, STEPS_OF_EDGES, ShiftedModels};
 use crate::nets::{RayBudget, RayNets, affordable_derivatives, work_of_nets};
-use crate::parameter::{New, Parameter, change_curvature, curvatures, position, scale};
+use crate::obstacle::Obstacle;
+use crate::parameter::{New, Parameter, change_curvature, curvatures, position, size_of_rim};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
-use etendue_field::{
-    Complex, Disc, Frame, Light, Orientation, Patch, Pattern, Rectangle, Reflectance, Shape,
-    Specular, Weight,
-};
+use etendue_field::{Complex, Frame, Light, Orientation, Patch, Specular};
 use glam::{DQuat, DVec3};
 
 /// Values below this threshold, in metres or in the unit of a parameter, are treated as zero,
 /// because they may be rounding errors.
 const ROUNDING_OF_ZERO: f64 = 1e-9;
+
+/// The largest number of obstacles that have parameters.
+const MAX_OBSTACLES: usize = 4;
 
 /// Behind surfaces that scatter, the parameters albedo and lobe belong to the last of them. Other
 /// albedos are not parameters, because the light field determines only the product of all albedos.
@@ -35,6 +36,7 @@ impl Model for Observed {
         all.extend(masks.filter(|parameter| self.is_parameter(*parameter)));
         let surfaces = self.system.first_visits();
         all.extend(surfaces.flat_map(|(i, surface)| surface.rim(i)));
+        all.extend(self.system.parameters_of_obstacles());
         let Some(last) = self.system.last_scatterer() else {
             all.extend(self.specular_parameters());
             all.retain(|parameter| self.is_parameter(*parameter));
@@ -78,11 +80,18 @@ impl Model for Observed {
             (Parameter::Travel(0), _) => format!("travel light to {}", name(0)),
             (Parameter::Travel(i), _) => format!("travel {} to {}", name(i - 1), name(i)),
             (Parameter::Incidence(i), _) => format!("incidence on {}", name(i)),
-            (Parameter::SurfaceSize(i, axis), _) => match surfaces[i].extent {
-                PatchExtent::Whole => format!("aperture of {}", name(i)),
-                PatchExtent::Rectangle(_) => format!("side {} of {}", ["x", "y"][axis], name(i)),
-            },
+            (Parameter::SurfaceSize(i, axis), _) => {
+                let is_rectangle = matches!(surfaces[i].extent, PatchExtent::Rectangle(_));
+                size_of_rim(is_rectangle, axis, name(i))
+            }
             (Parameter::SurfacePosition(i, axis), _) => position(axis, name(i)),
+            (Parameter::ObstacleSize(i, axis), _) => {
+                let Obstacle { name, form, .. } = &self.system.obstacles[i];
+                size_of_rim(form.sizes() == 2, axis, name)
+            }
+            (Parameter::ObstaclePosition(i, axis), _) => {
+                position(axis, &self.system.obstacles[i].name)
+            }
             (Parameter::Curvature(i, axis), _) => format!("curvature {} of {}", axis + 1, name(i)),
             (Parameter::Index(i), _) => format!("index of {}", name(i)),
             (Parameter::FocalLength(i), _) => format!("focal length of {}", name(i)),
@@ -120,6 +129,12 @@ impl Model for Observed {
             }
             Parameter::SurfaceSize(i, axis) => self.resize(i, axis, new)?,
             Parameter::SurfacePosition(i, axis) => self.move_sideways(i, axis, new)?,
+            Parameter::ObstacleSize(i, axis) => {
+                self.system.obstacles.get_mut(i)?.form.resize(axis, new)?;
+            }
+            Parameter::ObstaclePosition(i, axis) => {
+                self.system.obstacles.get_mut(i)?.form.reposition(axis, new);
+            }
             Parameter::Index(i) => match &mut self.system.surfaces.get_mut(i)?.interaction {
                 Interaction::Specular(Specular::Refraction { front, back }) => {
                     let denser = if *front > *back { front } else { back };
@@ -325,36 +340,6 @@ impl Observed {
 }
 
 impl PathSystem {
-    /// Returns the system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
-    /// wide. A Lambertian lobe has no width and stays as it is. Returns `None` if a lobe stays as it
-    /// is and the light that it receives does not become narrower, which is so for an environment
-    /// and between several surfaces.
-    ///
-    /// If windows become narrower and frequencies higher by the same factor, the error of
-    /// first-order maps falls with the factor.
-    #[must_use]
-    pub fn shrunk(&self, factor: f64, keeps_lobes: bool) -> Option<Self> {
-        let is_environment = matches!(self.light, Light::Environment { .. });
-        let is_lit_narrowly = self.visited == 1 && !is_environment;
-        let mut system = self.clone();
-        system.light = shrunk_light(&self.light, factor);
-        for surface in &mut system.surfaces[..self.visited] {
-            match &mut surface.interaction {
-                Interaction::Specular(_) => {}
-                Interaction::Diffuse { .. } if is_lit_narrowly => {}
-                Interaction::Diffuse { .. } => return None,
-                Interaction::Reflects(reflectance) => {
-                    let lobes = if keeps_lobes { 1.0 } else { factor };
-                    let have_width = shrink(reflectance, factor, lobes);
-                    if (keeps_lobes || !have_width) && !is_lit_narrowly {
-                        return None;
-                    }
-                }
-            }
-        }
-        Some(system)
-    }
-
     /// Returns the surfaces before the plane, without those that light has visited before.
     fn first_visits(&self) -> impl Iterator<Item = (usize, &PathSurface)> {
         let all = self.before_plane();
@@ -362,6 +347,19 @@ impl PathSystem {
             all[..*i].iter().all(|before| before.name != surface.name)
         };
         all.iter().enumerate().filter(is_new)
+    }
+
+    /// Returns the parameters of the obstacles, except an obstacle that is a surface of the path,
+    /// if they are few.
+    fn parameters_of_obstacles(&self) -> impl Iterator<Item = Parameter> {
+        let obstacles = self.obstacles.iter().enumerate();
+        let beside = obstacles.filter(|(_, obstacle)| obstacle.until.is_none());
+        let few = beside.take_while(|_| self.obstacles.len() <= MAX_OBSTACLES);
+        few.flat_map(|(i, obstacle)| {
+            let sizes = 0..obstacle.form.sizes();
+            let sizes = sizes.map(move |axis| Parameter::ObstacleSize(i, axis));
+            sizes.chain((0..3).map(move |axis| Parameter::ObstaclePosition(i, axis)))
+        })
     }
 
     /// Gives the patch and the interaction of a surface to all visits of this surface.
@@ -401,32 +399,6 @@ impl PathSystem {
     }
 }
 
-/// Makes the patterns of a reflectance `factor` times as wide, and its lobes `lobes` times as wide.
-/// Returns whether all lobes have a width.
-fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
-    let Reflectance { terms, texture } = reflectance;
-    let mut have_width = true;
-    for term in &mut *terms {
-        match term.brdf.lobe.number_mut() {
-            Some(("exponent", exponent)) => *exponent /= lobes * lobes,
-            Some((_, roughness)) => *roughness *= lobes,
-            None => have_width = false,
-        }
-    }
-    let weights = terms.iter_mut().filter_map(|term| match &mut term.weight {
-        Weight::One => None,
-        Weight::Pattern(pattern) | Weight::Rest(pattern) => Some(pattern),
-    });
-    for pattern in weights.chain(texture) {
-        match pattern {
-            Pattern::Cosine(grating) => grating.frequency /= factor,
-            Pattern::Checkerboard { period } => *period *= factor,
-            Pattern::Picture(picture) => picture.size = picture.size.map(|side| side * factor),
-        }
-    }
-    have_width
-}
-
 impl PathSurface {
     /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
     /// is the albedo of the first BRDF.
@@ -454,27 +426,6 @@ impl PathSurface {
             Interaction::Specular(_) | Interaction::Diffuse { .. } => true,
         }
     }
-}
-
-/// Returns a light `factor` times as large, about the central ray.
-fn shrunk_light(light: &Light, factor: f64) -> Light {
-    let mut light = light.clone();
-    match &mut light {
-        Light::Projector { image, .. } | Light::Beam { image, .. } => {
-            image.width = image.width.map(|w| w * factor);
-            if let Some(grating) = &mut image.grating {
-                grating.frequency /= factor;
-            }
-        }
-        Light::Area { shape, .. } => {
-            scale(shape, factor);
-            let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
-                shape;
-            *center = center.map(|c| c * factor);
-        }
-        _ => {}
-    }
-    light
 }
 
 /// Returns a patch's frame after a turn about B at the central ray's hit point. The turn increases
