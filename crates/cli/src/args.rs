@@ -68,7 +68,7 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
     Predict(PredictArgs),
-    /// Compare measured and predicted files; write the files of `run`.
+    /// Compare measured and predicted files; write files as `run` does.
     Compare(CompareArgs),
     /// Print commands that measure a scene in parts on several machines.
     Split(SplitArgs),

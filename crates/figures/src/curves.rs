@@ -144,7 +144,7 @@ const POINT: &str = INK;
 const OPEN: f64 = 5.0;
 const HOLE: f64 = 3.8;
 const PAPER: &str = "#ffffff";
-/// Half of the length of the stroke that stands for a line through one point.
+/// Half the length of the dash that stands for a curve of a single point.
 const DASH: f64 = 11.0;
 /// Length of the short line that the key shows for each curve.
 const SAMPLE: f64 = 30.0;

@@ -64,6 +64,7 @@ pub(crate) fn measured(
         is_full: AtomicBool::default(),
     };
     let mut all = Measurement::new(scene.planes.clone());
+    // Batches of an earlier run must not be taken for those of this run.
     if !checkpointing.resume {
         kept.remove();
     }
@@ -76,6 +77,7 @@ pub(crate) fn measured(
             drop(bar);
             return Ok(None);
         }
+        // Another process may have left batches unfinished, so what is missing is looked up again.
         let missing = keeper.missing(&mut all, &*source, &lit)?;
         if missing.is_empty() {
             break;

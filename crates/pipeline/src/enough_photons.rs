@@ -21,6 +21,7 @@ pub(crate) fn leave_open(
     planes: &mut [PlaneComparison],
 ) -> Result<(), Failure> {
     let count = case.scene.planes.len() as u64;
+    // All photons are aimed at the only window.
     if count < 2 {
         return Ok(());
     }
@@ -37,6 +38,7 @@ pub(crate) fn leave_open(
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail
             });
+            // A first-order chain that fails beside exact theory is wrong for any number of photons.
             if !has_wrong_map {
                 report.verdict = Verdict::Undecided;
             }

@@ -65,6 +65,7 @@ impl Inquiry {
         rays: f64,
     ) -> Self {
         let [this, other] = methods.map(Method::words);
+        // The three are independent: where two agree, the third is wrong.
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!(

@@ -168,6 +168,7 @@ impl Run {
         let (referred, told): (Vec<u32>, Vec<u32>) =
             (0..).zip(theories).map(|(i, _)| i).partition(is_referred);
         let referred: Vec<usize> = referred.into_iter().map(|i| i as usize).collect();
+        // One measurement by the other method serves all planes without theory.
         let judges = Judge::all(scene, &referred, self.method, reporter)?;
         let bar = reporter.begin(Work::Steps {
             verb: "predicting",

@@ -18,7 +18,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Returns the power of a slice [ρ, ν] along the axis, and the axis.
+    /// Returns a slice's power [ρ, ν] summed onto the axis, and the axis.
     fn marginal(
         self,
         power: ArrayView2<'_, f64>,

@@ -70,6 +70,7 @@ pub fn measure_watched(
     batches: &mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &dyn Watch,
 ) -> (Measurement, Vec<PartialBatch>) {
+    // The error of the reduced transform would exceed the noise of quiet photons.
     let plan = if source.is_precise() {
         SliceTransform::new
     } else {
@@ -100,6 +101,7 @@ pub fn measure_watched(
     let mut whole = Vec::new();
     let mut begun = Vec::new();
     for BatchSum { parts, state, .. } in all.into_iter().filter_map(Arc::into_inner) {
+        // If a thread has panicked, the sums of the others are still right.
         let state = state.into_inner().unwrap_or_else(PoisonError::into_inner);
         match state.partial {
             PartialBatch {

@@ -81,7 +81,7 @@ impl Measurement {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }
 
-    /// Returns the slices of each batch at plane `plane` without the mean of the light in the
+    /// Returns the slices of each batch at plane `plane` minus the mean of the light in the
     /// window (see [`WindowedMean`]).
     ///
     /// # Panics

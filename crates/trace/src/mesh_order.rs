@@ -70,6 +70,7 @@ pub(crate) fn meet_mesh(
     let Some(any) = tests.first().copied() else {
         return;
     };
+    // Photons of one cell meet the same nodes of the hierarchy, so the tests are sorted by cell.
     let mut total = 0;
     for start in &mut *starts {
         total += *start;

@@ -100,6 +100,7 @@ impl<'a> Content<'a> {
                     bytes.extend(row.into_iter().flat_map(f64::to_le_bytes));
                 }
                 Self::Mcpl(rays, header, _) => {
+                    // MCPL has centimetres.
                     let (position, direction, weight) = rays.ray(crossing)?;
                     let photon = Particle {
                         position_cm: position.map(|c| 100.0 * c),
@@ -116,6 +117,7 @@ impl<'a> Content<'a> {
                         .map_err(io::Error::other)?;
                 }
                 Self::Tm25(rays, ..) => {
+                    // TM-25 has millimetres.
                     let (position, direction, power) = rays.ray(crossing)?;
                     let position = position.map(|c| 1000.0 * c);
                     let row = position.into_iter().chain(direction).chain([power]);

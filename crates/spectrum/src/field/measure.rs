@@ -135,6 +135,7 @@ pub fn measure_field(
     options: &FieldOptions,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<FieldMeasurement, TooFewBatches> {
+    // A batch without photons says nothing about noise.
     let batches: Vec<u32> = batches.filter(|b| source.emitted(*b) > 0).collect();
     if batches.len() < MIN_GROUPS {
         return Err(TooFewBatches {
@@ -158,6 +159,8 @@ pub fn measure_field(
     let spectrum = run.transform.spectrum(sum);
     let bins = RadialBins::new(&grid);
     let moments = options.covariance.then(|| Moments::new(grid, &plane.grid));
+    // Powers of groups need the spectrum of all groups, so the photons of groups whose grids are not
+    // kept are traced again.
     let mut found = run.powers(&bins, moments.as_ref(), &spectrum, kept);
     let groups = found.iter_mut().filter_map(|found| found.spectrum.take());
     let groups = groups.collect();

@@ -76,9 +76,9 @@ pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The product of the window, the gratings and the factor that depends on slopes, expanded as a
-    /// sum of products of waves of both sections. A factor that depends on slopes has several
-    /// products of waves.
+    /// The window times the gratings times the factor of slopes, expanded as a sum: each term is a
+    /// sum of waves over (x, u) times a sum of waves over (y, v). Only a factor of slopes needs
+    /// several terms.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,

@@ -106,6 +106,7 @@ fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
         let hit = surface.hit;
         let arriving = (hit - from).normalize();
         from = hit;
+        // Light changes its direction here, but its spectrum is not convolved.
         if !surface.scatters() {
             continue;
         }

@@ -153,6 +153,7 @@ impl Model for Observed {
                 None => parameter.change_light(&mut self.system.light, new)?,
             },
         }
+        // A surface that light visits twice has changed at both visits.
         match parameter {
             Parameter::Incidence(i)
             | Parameter::Curvature(i, _)

@@ -442,6 +442,7 @@ impl Backward {
             brdf, frame, to, ..
         } = at;
         let sees_light = self.legs[leg].courses.along.leaves.is_none();
+        // No drawn direction would meet a light without extent.
         if let (TracedLight::Narrow(light), true) = (&self.light, sees_light) {
             return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
                 let from = frame.vector_to_local(-direction(&ray).normalize());

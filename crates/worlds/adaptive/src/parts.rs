@@ -20,8 +20,8 @@ pub enum SampleMethod {
     /// the criteria, and half follow the errors at the first samples. The errors at the first
     /// samples also calibrate the criteria for each object.
     Auto,
-    /// Samples follow only the measured light. The first quarter of the samples is distributed
-    /// uniformly, and the standard deviation of these samples is the measure.
+    /// Samples follow only the measured light. The first quarter of the samples is uniform, and the
+    /// rest follow the relative standard deviation of this quarter.
     Variance,
 }
 

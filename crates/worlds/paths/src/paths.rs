@@ -328,7 +328,7 @@ impl Paths {
     }
 }
 
-/// Moves the items to keep to the front, and returns them.
+/// Moves the kept items to the front, and returns them.
 fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T] {
     let mut count = items.len();
     let mut i = 0;

@@ -127,7 +127,7 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings. The frequencies of these
+    /// Builds rules for (1 + u² + v²)^(−`power`) times gratings. The frequencies of these
     /// gratings, in cycles per slope, add up to `frequencies` along u and along v.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {

@@ -64,6 +64,7 @@ pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
     for (i, (element, hit)) in elements.iter().zip(&hits).enumerate() {
         walk.travel(hit.distance - travelled, &element.name);
         travelled = 0.0;
+        // A plane on the last surface has its coordinates, so light does not travel on.
         let ends_here = on_last && i + 1 == hits.len();
         let across = walk.clone().after(element, hit)?;
         foci = across.foci();

@@ -174,6 +174,7 @@ impl<'a> RaySampler<'a> {
             },
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
+                // Rays from one point have two coordinates, which cannot fill the plane's four.
                 if matches!(outer, Outer::Center) {
                     return None;
                 }

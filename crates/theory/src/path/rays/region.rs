@@ -97,6 +97,7 @@ impl<F: RayField> Finder<'_, F> {
                 region = grown;
                 continue;
             };
+            // Where light touches the border of the region, there may be light beyond it.
             let touches = |axis: usize| {
                 let [low, high] = lit[axis];
                 let [least, most] = region[axis];

@@ -75,6 +75,7 @@ impl OutgoingDirections<'_> {
                 (direction, at, steradians)
             }
         };
+        // Either density may have drawn the direction, so it is weighted by both.
         let mut density = (1.0 - by_lobe) * targets.density(end) / steradians;
         if let Some(lobe) = lobe {
             let at = self.angles(direction);

@@ -49,6 +49,7 @@ pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let lobe = match brdf.lobe {
         Lobe::Lambertian => reflectance(brdf.fresnel, cos_from) / PI,
         Lobe::Phong { exponent } => {
+            // The cosine between `to` and the mirror direction of `from`.
             let cos = 2.0 * cos_from * cos_to - from.dot(to);
             let lobe = (exponent + 1.0) / TAU * libm::pow(cos.max(0.0), exponent);
             lobe * reflectance(brdf.fresnel, cos_from)

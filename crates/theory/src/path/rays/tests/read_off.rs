@@ -296,7 +296,8 @@ fn steps_read_like_a_figure() {
     );
 }
 
-/// Tests that the `defect` of a chain detects a relative error of 10⁻⁵ in any entry of any map.
+/// Tests that the `defect` of a chain detects a relative error of 10⁻⁴ in its factor and in each
+/// phase, and a wrong sign of the largest entry of each row.
 #[test]
 fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));
