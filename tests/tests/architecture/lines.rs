@@ -35,7 +35,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
     ("meshfile", 1657, 1658, "an empty line"),
     ("mpi", 77, 77, ""),
-    ("paper", 3243, 3134, ""),
+    ("paper", 3243, 3169, ""),
     ("pipeline", 5436, 3046, ""),
     (
         "predict",
@@ -81,7 +81,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
     ("worlds", 22_217, 21_904, ""),
-    ("tests of all kinds", 69_203, 67_710, ""),
+    ("tests of all kinds", 69_203, 67_728, ""),
 ];
 
 /// A crate may be smaller than its row says by one line in this many, so that not every change needs
