@@ -280,7 +280,7 @@ fn furnace(outcomes: &[ComparedScene]) -> ReportSection {
     .with_checks(vec![lit])
 }
 
-/// Returns the configuration factor of a rectangle for a parallel element below a corner of the
+/// The configuration factor of a rectangle for a parallel element below a corner of the
 /// rectangle. The sides x and y are in units of the distance to the element.
 fn corner(x: f64, y: f64) -> f64 {
     let (p, q) = (x.hypot(1.0), y.hypot(1.0));

@@ -37,7 +37,7 @@ struct CreatureScene {
 }
 
 impl CreatureScene {
-    /// Returns the creatures scene, at the size for this quality.
+    /// The creatures scene, at the size for this quality.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
         for (name, bytes) in etendue_scenes::CREATURES {
@@ -81,7 +81,7 @@ impl CreatureScene {
         (found.radiance, found.layers)
     }
 
-    /// Returns a quantity of the first run as a picture, and its standard error from all runs.
+    /// A quantity of the first run as a picture, and its standard error from all runs.
     fn with_error(
         &self,
         runs: &[Layers],
@@ -94,7 +94,7 @@ impl CreatureScene {
         Ok([each[0].clone(), all.std_axis(Along(0), 1.0)])
     }
 
-    /// Returns the values of pixels as an array [column, row] whose first row is the lowest, as
+    /// The values of pixels as an array [column, row] whose first row is the lowest, as
     /// figures require.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
@@ -241,25 +241,25 @@ impl ComparedPictures {
         }
     }
 
-    /// Returns the relative luminance, which is radiance divided by the radiance of white, and at
+    /// The relative luminance, which is radiance divided by the radiance of white, and at
     /// most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
 
-    /// Returns the standard error of the reference's relative luminance.
+    /// The standard error of the reference's relative luminance.
     fn reference_error(&self, scene: &CreatureScene) -> Result<Array2<f64>, Failure> {
         let variance = self.reference.variance.iter();
         scene.picture(variance.map(|v| v.sqrt() / self.white).collect())
     }
 
-    /// Returns the difference from the reference, relative to white.
+    /// The difference from the reference, relative to white.
     fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         let both = of.iter().zip(&self.reference.mean);
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// Returns the relative mean square error of a picture, and this error without the thousandth
+    /// The relative mean square error of a picture, and this error without the thousandth
     /// of the pixels that have the largest errors. The noise of the reference is subtracted.
     fn errors(&self, of: &[f64]) -> [f64; 2] {
         let reference = &self.reference.mean;
@@ -268,7 +268,7 @@ impl ComparedPictures {
         mean_errors(squares)
     }
 
-    /// Returns the relative mean square error of the reference due to its noise.
+    /// The relative mean square error of the reference due to its noise.
     fn noise(&self) -> f64 {
         let squares = self.reference.variance.iter().map(|noise| [*noise, 0.0]);
         mean_errors(self.relative(squares))[0]
@@ -284,7 +284,7 @@ impl ComparedPictures {
     }
 }
 
-/// Returns the mean of differences between errors and their noise, over all pixels and without the
+/// The mean of differences between errors and their noise, over all pixels and without the
 /// thousandth of the pixels that have the largest errors.
 fn mean_errors(mut each: Vec<[f64; 2]>) -> [f64; 2] {
     each.sort_unstable_by(|[a, _], [b, _]| a.total_cmp(b));
@@ -346,14 +346,14 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(figure)
 }
 
-/// Returns the radiance that a hundredth of the pixels exceed.
+/// The radiance that a hundredth of the pixels exceed.
 fn bright(radiance: &[f64]) -> f64 {
     let mut sorted = radiance.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted[sorted.len() * 99 / 100].max(f64::MIN_POSITIVE)
 }
 
-/// Returns the style with a grey scale for photographs.
+/// The style with a grey scale for photographs.
 fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,

@@ -101,7 +101,7 @@ pub(crate) fn measured(
     Ok(Some(all))
 }
 
-/// Returns the error of a run that exceeded its time limit; the error states which batches are
+/// The error of a run that exceeded its time limit; the error states which batches are
 /// stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();

@@ -34,7 +34,7 @@ pub trait Watch: Sync {
     /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether a part of a batch should be measured. This function is called just before
+    /// Whether a part of a batch should be measured. This function is called just before
     /// the part is measured. If it returns false, this part and the later parts of the batch are
     /// not measured.
     fn should_continue(&self, _batch: u32, _part: u32) -> bool {
@@ -193,7 +193,7 @@ impl BatchSum {
     }
 }
 
-/// Returns the contribution of a part of a batch to the means over the entire batch.
+/// The contribution of a part of a batch to the means over the entire batch.
 fn measure_part(
     source: &dyn PhotonSource,
     [index, part]: [u32; 2],

@@ -108,7 +108,7 @@ impl OrderCells {
         }
     }
 
-    /// Returns the place of a point's cell on a space-filling curve. A point outside the grid has
+    /// The place of a point's cell on a space-filling curve. A point outside the grid has
     /// the cell that is nearest along each axis.
     fn cell(&self, [x, y]: [f64; 2]) -> u32 {
         let along = |axis: usize, at: f64| {
@@ -119,7 +119,7 @@ impl OrderCells {
     }
 }
 
-/// Returns a number below 256 with a zero between each two bits.
+/// A number below 256 with a zero between each two bits.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

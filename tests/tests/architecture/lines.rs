@@ -88,7 +88,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
 /// another row.
 const SLACK: usize = 50;
 
-/// Returns the number of lines of each crate outside its tests, and the lines of all tests.
+/// The number of lines of each crate outside its tests, and the lines of all tests.
 fn counted(files: &BTreeMap<String, String>) -> BTreeMap<String, usize> {
     let mut tests: Vec<String> = Vec::new();
     for (name, text) in files {
@@ -126,7 +126,7 @@ fn counted(files: &BTreeMap<String, String>) -> BTreeMap<String, usize> {
     counted
 }
 
-/// Returns what is wrong with the rows of a table.
+/// What is wrong with the rows of a table.
 fn wrong(table: &[(&str, usize, usize, &str)], counted: &BTreeMap<String, usize>) -> Vec<String> {
     let mut wrong = Vec::new();
     for (name, lines) in counted {

@@ -57,7 +57,7 @@ impl fmt::Debug for Leader<'_> {
 }
 
 impl<'a> Leader<'a> {
-    /// Returns the leader of `workers`; this process is number 0.
+    /// The leader of `workers`; this process is number 0.
     #[must_use]
     pub fn new(workers: &'a dyn Workers) -> Self {
         let other = Other {

@@ -78,7 +78,7 @@ impl FieldSpectrum {
         })
     }
 
-    /// Returns the shared frequencies of each line, up to and including Nyquist.
+    /// The shared frequencies of each line, up to and including Nyquist.
     fn shared(&self, slices: &Slices) -> Vec<Vec<SharedFrequency>> {
         let grid = &slices.grid;
         let mut lines = vec![(0, [0, 2])];

@@ -61,7 +61,7 @@ pub(crate) enum SamplePlacing {
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 impl SampleMethod {
-    /// Returns the parts of the method.
+    /// The parts of the method.
     pub(crate) fn parts(self) -> MethodParts {
         let even = MethodParts {
             criterion: None,
@@ -91,7 +91,7 @@ impl SampleMethod {
         }
     }
 
-    /// Returns the default number of rays from a point that measure the distance of blockers.
+    /// The default number of rays from a point that measure the distance of blockers.
     #[must_use]
     pub fn blocker_rays(self) -> u32 {
         match self {
