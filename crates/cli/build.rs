@@ -17,7 +17,7 @@ fn main() {
     );
 }
 
-/// Returns the commit. Without Git, or in the repository of another project, there is none.
+/// The commit. Without Git, or in the repository of another project, there is none.
 fn commit() -> Option<String> {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let top = git(&["rev-parse", "--show-toplevel"])?;

@@ -24,7 +24,7 @@ use std::path::Path;
 /// first block is negligible.
 const PHOTONS: u64 = 1 << 16;
 
-/// Returns a scene of the repository whose batches have [`PHOTONS`] photons each.
+/// A scene of the repository whose batches have [`PHOTONS`] photons each.
 fn scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.ron"));
     let text = std::fs::read_to_string(&path).unwrap();

@@ -213,6 +213,8 @@ def check_statements(page: Path) -> list[str]:
         found[kind] += 1
         if kind not in KINDS:
             wrong.append(f"{page}: a row without kind of evidence: {row}")
+        if kind == "photons" and ":" not in cells[2]:
+            wrong.append(f"{page}: a row without the smallest fault that photons see: {row}")
     head = text.partition("\n## ")[0]
     total = re.findall(r"Of (\d+) statements", head)
     stated = {kind: int(n) for n, kind in re.findall(r"(\d+)(?: [a-z]+)* \*([a-z ]+)\*", head)}

@@ -85,7 +85,7 @@ pub(crate) fn calibration(
     sections
 }
 
-/// Returns a copy of the measurement in which batches are dependent.
+/// A copy of the measurement in which batches are dependent.
 fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let mut planted = Measurement::new(measurement.planes().to_vec());
@@ -105,7 +105,7 @@ fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     planted
 }
 
-/// Returns the results of all seeds, for each fault and for no fault.
+/// The results of all seeds, for each fault and for no fault.
 fn sample(
     seeds: Range<u64>,
     scene: &Scene,
@@ -132,7 +132,7 @@ fn sample(
     (0..faults.len()).map(planes).collect()
 }
 
-/// Returns the reports on the planes of one seed, for each of the faults.
+/// The reports on the planes of one seed, for each of the faults.
 fn reports(
     mut scene: Scene,
     seed: u64,

@@ -16,7 +16,7 @@ use etendue_theory::{Chain, Model, Operator, Parameter};
 pub(crate) use power::power;
 pub(crate) use smallest::smallest;
 
-/// Returns the section on all faults planted in the main scene; its first row is the comparison
+/// The section on all faults planted in the main scene; its first row is the comparison
 /// without a fault.
 pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
@@ -49,7 +49,7 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     )
 }
 
-/// Returns the section on faults that the main scene cannot reveal, each planted in a scene that
+/// The section on faults that the main scene cannot reveal, each planted in a scene that
 /// reveals it.
 pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
     let mut rows = Vec::new();
@@ -103,7 +103,7 @@ fn of_scene(name: &'static str, rows: Vec<Row>) -> impl Iterator<Item = Row> {
 /// The name of a fault, and the prediction with this fault.
 type PredictionFault = (&'static str, Box<Predict>);
 
-/// Returns a function that predicts slices by a modified chain. The function returns `None` if the
+/// A function that predicts slices by a modified chain. The function returns `None` if the
 /// modification has no effect.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     Box::new(move |scene, plane| {
@@ -113,12 +113,12 @@ fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     })
 }
 
-/// Returns a fault of the chain.
+/// A fault of the chain.
 fn fault(name: &'static str, change: impl Fn(&mut Chain) + 'static) -> PredictionFault {
     (name, chained(change))
 }
 
-/// Returns a fault of a parameter, which is multiplied by a factor.
+/// A fault of a parameter, which is multiplied by a factor.
 fn scaled(name: &'static str, which: fn(&Parameter) -> bool, factor: f64) -> PredictionFault {
     fault(name, move |c| {
         if let Some(p) = c.parameters().into_iter().find(which) {
@@ -204,7 +204,7 @@ fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &P
     judged(scene, name, &all)
 }
 
-/// Returns the p-value of the slices of a plane, and that of its radial spectrum.
+/// The p-value of the slices of a plane, and that of its radial spectrum.
 fn p_values(
     scene: &Scene,
     measurement: &Measurement,
@@ -216,7 +216,7 @@ fn p_values(
     [residuals.p_value(seed), power.p_value]
 }
 
-/// Returns the row of a fault that has the given p-values at each plane: of the slices, and of the
+/// The row of a fault that has the given p-values at each plane: of the slices, and of the
 /// radial spectrum.
 fn judged(scene: &Scene, name: &'static str, p_values: &[[Option<f64>; 2]]) -> Row {
     let level = sidak(scene.run.alpha, TESTS * scene.planes.len());
@@ -294,7 +294,7 @@ fn predictions() -> Vec<PredictionFault> {
     ]
 }
 
-/// Returns a function that predicts slices of the field shifted along x by a share of the window's
+/// A function that predicts slices of the field shifted along x by a share of the window's
 /// half-width.
 fn moved(share: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
@@ -303,7 +303,7 @@ fn moved(share: f64) -> Box<Predict> {
     })
 }
 
-/// Returns a function that predicts slices with windows that are wider than the windows of the
+/// A function that predicts slices with windows that are wider than the windows of the
 /// scene by the given fractions.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
@@ -358,7 +358,7 @@ fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
     });
 }
 
-/// Returns the slices of the field shifted by `shift` along x.
+/// The slices of the field shifted by `shift` along x.
 fn shifted(mut slices: Slices, shift: f64) -> Slices {
     let grid = slices.grid;
     for ((k, m, _), value) in slices.half.indexed_iter_mut() {

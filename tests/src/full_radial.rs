@@ -57,12 +57,12 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// Returns the name of the scene, without its folder.
+    /// The name of the scene, without its folder.
     fn name(&self) -> &'static str {
         self.scene.rsplit('/').next().unwrap_or(self.scene)
     }
 
-    /// Returns the scene of the case with only the plane of the case.
+    /// The scene of the case with only the plane of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let set = self.set.iter().chain(set);
         let set: Vec<_> = set.map(|(k, v)| (*k, (*v).to_owned())).collect();
@@ -111,7 +111,7 @@ fn compared(
     FullRadialComparison::new(measured, predicted, scene.run.seed).report
 }
 
-/// Returns three sections: the calibration over many seeds, faults planted in predictions, and a
+/// Three sections: the calibration over many seeds, faults planted in predictions, and a
 /// fault planted in the calibration.
 pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
     let found: Vec<(String, Vec<FullRadialReport>)> = CASES
@@ -159,7 +159,7 @@ fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadia
     )
 }
 
-/// Returns a table row that summarises the p-values of many seeds.
+/// A table row that summarises the p-values of many seeds.
 fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     let p: Vec<f64> = found
         .iter()

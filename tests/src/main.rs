@@ -227,7 +227,7 @@ fn shown(sections: &[ReportSection]) -> String {
     text
 }
 
-/// Returns the exit code of a command: 1 if a section fails.
+/// The exit code of a command: 1 if a section fails.
 fn judged(sections: &[ReportSection]) -> ExitCode {
     ExitCode::from(u8::from(!sections.iter().all(ReportSection::passes)))
 }
@@ -290,7 +290,7 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// Returns the page to which a command contributes a part, as the file of the page, the title of
+/// The page to which a command contributes a part, as the file of the page, the title of
 /// the part, the name of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     let part = |title, name, of| Some(["results/validation.md", title, name, of]);
@@ -345,7 +345,7 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     }
 }
 
-/// Returns a page with one of its parts replaced or added; parts begin with their titles.
+/// A page with one of its parts replaced or added; parts begin with their titles.
 fn with_part(page: &str, title: &str, part: &str) -> String {
     let heading = format!("# {title}\n");
     // A part of a page may itself contain `##` headings.
@@ -410,7 +410,7 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Returns the sections on calibration, for photons from lattices, from nets and from independent
+/// The sections on calibration, for photons from lattices, from nets and from independent
 /// random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let others = ["grating", "two_layers"].map(|scene| (scene, Sampling::Lattice));

@@ -11,7 +11,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::estimate;
 use ndarray::Array3;
 
-/// Returns the section on every plane at one number of photons.
+/// The section on every plane at one number of photons.
 pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let row = |report: &PlaneReport| row(&scene, report);
@@ -26,7 +26,7 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     )
 }
 
-/// Returns the section on the score tests of every plane at one number of photons.
+/// The section on the score tests of every plane at one number of photons.
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
@@ -67,7 +67,7 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     )
 }
 
-/// Returns the noise of photons from nets or lattices divided by the noise of photons from random
+/// The noise of photons from nets or lattices divided by the noise of photons from random
 /// numbers, over all frequencies of a plane.
 pub(crate) fn gain(sampling: Sampling, photons: u64, batches: u32) -> ReportSection {
     let kind = words(sampling);
@@ -126,7 +126,7 @@ pub(crate) fn gain(sampling: Sampling, photons: u64, batches: u32) -> ReportSect
     )
 }
 
-/// Returns the section on the noise at the receiver plane for increasing numbers of photons.
+/// The section on the noise at the receiver plane for increasing numbers of photons.
 pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut before = None;

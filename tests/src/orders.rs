@@ -25,7 +25,7 @@ pub(crate) fn check(fitted: f64, known: f64) -> Check {
     Check::new("order", off, AtMost(ORDER)).because("error of a fit to few sizes")
 }
 
-/// Returns the slope of the least-squares line.
+/// The slope of the least-squares line.
 pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;
@@ -108,7 +108,7 @@ const PLANTED: [(&str, &str, KnownOrder); 3] = [
     ("ggx_sphere", "Sphere(0.525)", First),
 ];
 
-/// Returns the section.
+/// The section.
 pub(crate) fn orders() -> ReportSection {
     let mut rows = Vec::new();
     for (name, known) in SCENES {
@@ -162,7 +162,7 @@ fn stored(name: &str, fields: &[(&str, String)]) -> Scene {
     sound(name, read(&format!("table1/{name}"), fields))
 }
 
-/// Returns the number of scene files of Table 1 that are not in the list.
+/// The number of scene files of Table 1 that are not in the list.
 ///
 /// # Panics
 /// Panics if the folder of the scenes cannot be read.
@@ -177,7 +177,7 @@ fn left_out() -> usize {
     paths.filter(|path| !is_known(path)).count()
 }
 
-/// Returns the errors of the chain to a plane; of the chain of another scene, if there is one.
+/// The errors of the chain to a plane; of the chain of another scene, if there is one.
 fn found(scene: &Scene, plane: &str, chain: Option<&Scene>) -> Option<Convergence> {
     let plane = scene.planes.iter().find(|p| p.name == plane)?;
     converge_to(scene, plane, &Applicability::new(scene, plane), chain)

@@ -25,7 +25,7 @@ pub(crate) fn progress(count: u64, things: &'static str) -> CountedProgress {
     CountedProgress { bar, things }
 }
 
-/// Returns the results of work on some items, in order, computed in parallel. A bar counts the
+/// The results of work on some items, in order, computed in parallel. A bar counts the
 /// items.
 pub(crate) fn in_parallel<N: Send, T: Send>(
     items: impl IntoIterator<Item = N>,

@@ -213,7 +213,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
     Ok(Some(cost))
 }
 
-/// Returns the normal quantile that corresponds to the quantile `t` of Student's distribution
+/// The normal quantile that corresponds to the quantile `t` of Student's distribution
 /// with this number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more
 /// degrees of freedom (Abramowitz and Stegun 1964, 26.7.8). Deviations in units of stated errors
 /// follow Student's distribution, because stated errors come from the spread of a few dozen
@@ -223,7 +223,7 @@ fn normal(t: f64, freedom: usize) -> f64 {
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
 }
 
-/// Returns a name for the theory of a plane and the way in which it is evaluated.
+/// A name for the theory of a plane and the way in which it is evaluated.
 fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     let nets = !prediction.replicates.is_empty();
     let is_rule = prediction.quadrature_error.is_some();
@@ -239,13 +239,13 @@ fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     }
 }
 
-/// Returns the sum of user and system time of this process.
+/// The sum of user and system time of this process.
 fn cpu_seconds() -> io::Result<f64> {
     let stat = fs::read_to_string("/proc/self/stat")?;
     Ok(work_of(&stat).unwrap_or_default().as_secs_f64())
 }
 
-/// Returns a section with a row for the pulls of each group.
+/// A section with a row for the pulls of each group.
 fn grouped(
     pulls: &[Pull],
     options: &PullOptions,
@@ -329,7 +329,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// Returns a section of the report with a table of the largest pulls. For each pull, the table
+/// A section of the report with a table of the largest pulls. For each pull, the table
 /// names the scene, the plane and the parameter.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
@@ -352,7 +352,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     )
 }
 
-/// Returns the section that compares the cost of predictions with the cost of tracing photons.
+/// The section that compares the cost of predictions with the cost of tracing photons.
 fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();

@@ -53,7 +53,7 @@ impl Check {
         Requirement { id, figure, bound }
     }
 
-    /// Returns a check that a fact is true. The checked number is 1 if the fact is true, and 0
+    /// A check that a fact is true. The checked number is 1 if the fact is true, and 0
     /// otherwise.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0)).because(reason)
@@ -65,7 +65,7 @@ impl Check {
         Self::new(id, p.unwrap_or(0.0), bound).because("α over all planes")
     }
 
-    /// Returns a check of photons against the exact prediction, judged as in a run. The check
+    /// A check of photons against the exact prediction, judged as in a run. The check
     /// passes if p passes. It also passes if the stated error of the prediction is below the
     /// resolution and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
@@ -80,13 +80,13 @@ impl Check {
         }
     }
 
-    /// Returns a check that photons are in the window of a plane.
+    /// A check that photons are in the window of a plane.
     pub(crate) fn light(report: &PlaneReport) -> Self {
         let light = report.in_window as f64;
         Self::new("light", light, Bound::AtLeast(1.0)).because("p says nothing without light")
     }
 
-    /// Returns a check that a number of occurrences is zero.
+    /// A check that a number of occurrences is zero.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0)).because("none may occur")
     }
@@ -95,7 +95,7 @@ impl Check {
         self.held().2
     }
 
-    /// Returns the requirement in words, the bound, and whether the number meets the requirement.
+    /// The requirement in words, the bound, and whether the number meets the requirement.
     fn held(&self) -> (&'static str, f64, bool) {
         let figure = self.figure;
         match self.bound {
@@ -117,22 +117,22 @@ fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
     checks.iter().filter(|check| !check.passes())
 }
 
-/// Returns the larger of two numbers, where NaN counts as the largest.
+/// The larger of two numbers, where NaN counts as the largest.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// Returns a p-value as text, or a dash if there is none.
+/// A p-value as text, or a dash if there is none.
 pub(crate) fn number(x: Option<f64>) -> String {
     x.map_or("–".to_owned(), |x| format!("{x:.5}"))
 }
 
-/// Returns a share in per cent, or a dash if there is none.
+/// A share in per cent, or a dash if there is none.
 pub(crate) fn percent(x: Option<f64>) -> String {
     x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x))
 }
 
-/// Returns the cells on the comparison of photons with the exact prediction and the chain of a
+/// The cells on the comparison of photons with the exact prediction and the chain of a
 /// plane: photons in the window, noise, p, and the error, the excess, the bound of the excess and
 /// the resolvable excess of the chain.
 pub(crate) fn plane_cells(report: &PlaneReport) -> [String; 7] {
@@ -148,7 +148,7 @@ pub(crate) fn plane_cells(report: &PlaneReport) -> [String; 7] {
     ]
 }
 
-/// Returns the verdict on a prediction in words.
+/// The verdict on a prediction in words.
 pub(crate) const fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "accepted",
@@ -239,7 +239,7 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// Returns the section on a planted fault. The section passes if at least one check of `self`
+    /// The section on a planted fault. The section passes if at least one check of `self`
     /// fails, although without the fault all checks of `self` pass.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();
@@ -292,7 +292,7 @@ impl ReportSection {
         )
     }
 
-    /// Returns a line for each failed check, which begins with the first cells of its row.
+    /// A line for each failed check, which begins with the first cells of its row.
     fn failures(&self) -> String {
         let of_row = |row: &Row| {
             let line = |check: &Check| format!("* {}: {}", row.cells[..2].join(", "), check.told());

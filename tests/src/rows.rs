@@ -64,7 +64,7 @@ const LINES: [(Line, [&str; 3]); 12] = [
     ),
 ];
 
-/// Returns the results for every row of Table 1, collected from the sections of all parts of the
+/// The results for every row of Table 1, collected from the sections of all parts of the
 /// validation.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection::new(
@@ -104,7 +104,7 @@ fn row(line: Line, words: [&str; 3], sections: &[ReportSection]) -> Row {
     Row::new(cells, checks)
 }
 
-/// Returns the check of p against the exact prediction, if the row has such a check.
+/// The check of p against the exact prediction, if the row has such a check.
 fn exact(row: &Row) -> Option<f64> {
     let check = row.checks.iter().find(|check| check.id == EXACT);
     check.map(|check| check.figure)

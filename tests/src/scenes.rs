@@ -13,7 +13,7 @@ pub(crate) const SUITE: &str = "travel fig1 fig3 fig8 fig9a fig9b fig9c fig4_sou
     fig4_spot fig7_one fig7_other fig7_two fig14 fig15 grating two_layers iris disc_light \
     two_lights colors mesh_blocker furnace diffuse two_bounces two_glossy";
 
-/// Returns the scene `scenes/NAME.ron`. If no number of photons or no seed is given, the scene
+/// The scene `scenes/NAME.ron`. If no number of photons or no seed is given, the scene
 /// keeps the value in its file.
 ///
 /// # Panics
@@ -25,7 +25,7 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
     sound(name.rsplit('/').next().unwrap_or(name), file)
 }
 
-/// Returns the text of `scenes/NAME.ron` after the given replacements, made in the given order.
+/// The text of `scenes/NAME.ron` after the given replacements, made in the given order.
 ///
 /// # Panics
 /// Panics if there is no such scene file, or if it does not contain one of the texts.
@@ -60,25 +60,25 @@ pub(crate) fn sound(name: &str, file: SceneFile) -> Scene {
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a sound scene")
 }
 
-/// Returns the scene `fig9b` with the given number of photons and seed.
+/// The scene `fig9b` with the given number of photons and seed.
 pub(crate) fn fig9b(photons: u64, seed: u64) -> Scene {
     named("fig9b", Some(photons), Some(seed))
 }
 
-/// Returns the scene `fig9b` with only the receiver plane: all photons are aimed at its window.
+/// The scene `fig9b` with only the receiver plane: all photons are aimed at its window.
 pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     let mut scene = fig9b(photons, seed);
     scene.planes.retain(|plane| plane.name == "receiver");
     scene
 }
 
-/// Returns the scene with photons that use the given kind of random numbers.
+/// The scene with photons that use the given kind of random numbers.
 pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
     scene.run.sampling = sampling;
     scene
 }
 
-/// Returns a description of the photons' random numbers.
+/// A description of the photons' random numbers.
 pub(crate) fn words(sampling: Sampling) -> &'static str {
     match sampling {
         Sampling::Lattice => "lattices",
@@ -217,7 +217,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .collect()
 }
 
-/// Returns the prediction that a reference measurement gives for the plane with index `index`.
+/// The prediction that a reference measurement gives for the plane with index `index`.
 ///
 /// # Panics
 /// Panics if the reference measurement has too few batches.

@@ -1,6 +1,6 @@
 //! Statistical functions that the calibration uses.
 
-/// Returns the probability that the maximum deviation of the empirical distribution of `count`
+/// The probability that the maximum deviation of the empirical distribution of `count`
 /// uniform numbers is at least `distance` (Kolmogorov's series, with Stephens' 1970 correction for
 /// finite counts).
 pub(crate) fn kolmogorov(distance: f64, count: usize) -> f64 {
@@ -14,7 +14,7 @@ pub(crate) fn kolmogorov(distance: f64, count: usize) -> f64 {
     (2.0 * (1..=100).map(term).sum::<f64>()).clamp(0.0, 1.0)
 }
 
-/// Returns the Kolmogorov–Smirnov p-value of the hypothesis that `values` are uniform on (0, 1).
+/// The Kolmogorov–Smirnov p-value of the hypothesis that `values` are uniform on (0, 1).
 pub(crate) fn uniformity(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -27,7 +27,7 @@ pub(crate) fn uniformity(values: &[f64]) -> f64 {
     kolmogorov(distance, sorted.len())
 }
 
-/// Returns the mean of values and the standard error of this mean.
+/// The mean of values and the standard error of this mean.
 pub(crate) fn mean(values: &[f64]) -> [f64; 2] {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

@@ -55,7 +55,7 @@ impl Errors {
     }
 }
 
-/// Returns the errors with eight taps in f64 and with six taps in whole numbers.
+/// The errors with eight taps in f64 and with six taps in whole numbers.
 pub(crate) fn transform(options: &TransformOptions) -> io::Result<ReportSection> {
     let bar = progress(options.scenes as u64, "scenes");
     let mut rows = Vec::new();
@@ -119,7 +119,7 @@ fn cells(name: &str, used: &str, errors: &[Errors; 2]) -> Vec<String> {
     cells
 }
 
-/// Returns the largest errors of both transforms over the planes of a scene; `None` if too few rays
+/// The largest errors of both transforms over the planes of a scene; `None` if too few rays
 /// are in the windows.
 fn of_scene(scene: &Scene, tracer: &Tracer) -> Option<[Errors; 2]> {
     let mut rays: Vec<Vec<Crossing>> = vec![Vec::new(); scene.planes.len()];
@@ -171,7 +171,7 @@ fn of_plane(plane: &VirtualPlane, rays: &[Crossing]) -> [Errors; 2] {
     })
 }
 
-/// Returns the four corners of the half-plane of frequencies at azimuth 0, and frequencies drawn at
+/// The four corners of the half-plane of frequencies at azimuth 0, and frequencies drawn at
 /// random, as indices [azimuth, ρ ≥ 0, ν].
 fn places(grid: &SliceGrid) -> Vec<[usize; 3]> {
     let shape = grid.half_shape();

@@ -19,7 +19,7 @@ pub(crate) fn resolved(name: &str, text: &str) -> Scene {
     resolve(name, file, folder.as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns a scene of the repository, with parts of its text replaced.
+/// A scene of the repository, with parts of its text replaced.
 pub(crate) fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     resolved(name, &text(name, edits))
 }

@@ -23,7 +23,7 @@ const ALPHA: f64 = 0.01;
 /// A fault planted in a system.
 type Fault = (&'static str, fn(&mut Observed));
 
-/// Returns a scene of the repository, with fewer photons than its file states.
+/// A scene of the repository, with fewer photons than its file states.
 fn scene(name: &str) -> Scene {
     let mut scene = edited(name, &[]);
     scene.run.photons = PHOTONS;

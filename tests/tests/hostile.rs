@@ -23,7 +23,7 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// Returns the path of the program `etendue` in the folder of the program `etendue-validation`.
+/// The path of the program `etendue` in the folder of the program `etendue-validation`.
 /// The program belongs to another package, which is not built if only this package is tested.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
@@ -44,7 +44,7 @@ fn program() -> PathBuf {
     path
 }
 
-/// Returns the time of the last change in a source folder, tests excluded.
+/// The time of the last change in a source folder, tests excluded.
 fn changed(folder: &Path) -> SystemTime {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     let times = entries.map(|path| {

@@ -8,7 +8,7 @@ use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_trace::AllLights;
 
-/// Returns a scene with several lights before a surface. `rest` has the fields after the surface.
+/// A scene with several lights before a surface. `rest` has the fields after the surface.
 fn scene(lights: &str, surface: &str, rest: &str) -> Scene {
     let text = format!(
         "({lights}, surfaces: [{surface}], \

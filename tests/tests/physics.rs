@@ -12,7 +12,7 @@ use etendue_theory::path::rays;
 /// Photons per run: noise is 2 to 4 % of each spectrum.
 const PHOTONS: u64 = 400_000;
 
-/// Returns the scene `fig9b` with parts of its text replaced.
+/// The scene `fig9b` with parts of its text replaced.
 fn scene(edits: &[(&str, &str)]) -> Scene {
     let mut scene = edited("fig9b", edits);
     scene.run.photons = PHOTONS;
@@ -144,7 +144,7 @@ fn a_black_receiver_is_dark() {
     assert_eq!(verdicts(&black, &black), [Verdict::Pass; 5]);
 }
 
-/// Returns every scene file of the repository whose planes lie behind smooth surfaces.
+/// Every scene file of the repository whose planes lie behind smooth surfaces.
 fn scene_files() -> Vec<Scene> {
     let read = |folder: &str| {
         let entries = std::fs::read_dir(folder).expect("the folder of scenes");

@@ -11,7 +11,7 @@ const SCENES: [&str; 4] = ["travel", "fig9b", "disc_light", "diffuse"];
 
 const PHOTONS: u64 = 1 << 20;
 
-/// Returns the largest difference between two spectra of one plane, in standard errors.
+/// The largest difference between two spectra of one plane, in standard errors.
 fn difference(full: &Measurement, reduced: &Measurement, plane: usize) -> f64 {
     let [full, reduced] = [full, reduced].map(|m| estimate::slices(m, plane).expect("batches"));
     let pairs = full.mean.half.iter().zip(&reduced.mean.half);

@@ -8,7 +8,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::estimate;
 use etendue_trace::{Backward, Tracer};
 
-/// Returns the scene `fig9b` with few photons and few frequencies.
+/// The scene `fig9b` with few photons and few frequencies.
 fn scene(seed: u64) -> Scene {
     let mut scene = fig9b(1 << 14, seed);
     for plane in &mut scene.planes {

@@ -24,7 +24,7 @@ impl BinaryHierarchy {
         Self { bvh, space }
     }
 
-    /// Returns the boxes, in the order in which [`Self::along`] visits them.
+    /// The boxes, in the order in which [`Self::along`] visits them.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.bvh.primitive_indices

@@ -56,7 +56,7 @@ pub(crate) fn bvh(
     joined(parts, kind)
 }
 
-/// Returns the numbers of boxes. If they are built in parts of `part` boxes, they are in the order
+/// The numbers of boxes. If they are built in parts of `part` boxes, they are in the order
 /// of a space-filling curve.
 pub(crate) fn in_parts(
     count: usize,

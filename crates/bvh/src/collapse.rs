@@ -17,7 +17,7 @@ pub(crate) struct Collapsed {
     pub(crate) depth: usize,
 }
 
-/// Returns the parts of the eight-wide tree made from a binary tree.
+/// The parts of the eight-wide tree made from a binary tree.
 ///
 /// # Panics
 ///
@@ -66,7 +66,7 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> Collapsed {
     }
 }
 
-/// Returns the cost of rays below each node of the binary tree, if this node becomes at most 1, 2
+/// The cost of rays below each node of the binary tree, if this node becomes at most 1, 2
 /// … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening (Ylitie,
 /// Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide
 /// BVHs*, section 3.1).

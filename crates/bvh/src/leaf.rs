@@ -77,7 +77,7 @@ impl Leaf {
         }
     }
 
-    /// Returns the triangles that a ray may meet, as a mask with one bit for each triangle.
+    /// The triangles that a ray may meet, as a mask with one bit for each triangle.
     #[inline(always)]
     fn candidates<S: Simd>(&self, simd: S, sight: &LeafRay) -> u32 {
         let a = self.across(simd, sight, 0);
@@ -92,7 +92,7 @@ impl Leaf {
         !u32::try_from(out.to_bitmask()).unwrap_or_default() & ((1 << self.count) - 1)
     }
 
-    /// Returns the position of a corner of each triangle across the ray.
+    /// The position of a corner of each triangle across the ray.
     #[inline(always)]
     fn across<S: Simd>(&self, simd: S, sight: &LeafRay, corner: usize) -> [Lanes<S>; 2] {
         let [x, y, z] = sight.axes;

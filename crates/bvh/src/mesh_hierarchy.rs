@@ -97,7 +97,7 @@ mod tests {
         }
     }
 
-    /// Returns the distances along a ray between which the ray is in a box.
+    /// The distances along a ray between which the ray is in a box.
     fn inside(start: DVec3, direction: DVec3, [low, high]: [DVec3; 2]) -> [f64; 2] {
         let [a, b] = [(low - start) / direction, (high - start) / direction];
         [a.min(b).max_element(), a.max(b).min_element()]

@@ -16,7 +16,7 @@ const PART: usize = 1 << 14;
 /// nodes. The operating system provides memory only when the program writes to the memory.
 const BOXES_PER_NODE: usize = 4;
 
-/// Returns the tree over numbered boxes. Each leaf is the number of one box.
+/// The tree over numbered boxes. Each leaf is the number of one box.
 pub(crate) fn tree(
     count: usize,
     space: &Space,
@@ -61,7 +61,7 @@ pub(crate) fn tree(
     Wide::new(nodes, top.depth + depth)
 }
 
-/// Returns the tree over some of the boxes.
+/// The tree over some of the boxes.
 fn part(numbers: &[u32], boxed: impl Fn(&u32) -> Aabb) -> Collapsed {
     let bvh = built(numbers.to_vec(), TreeKind::CollapsedSingle, boxed);
     let mut part = collapsed(&bvh);

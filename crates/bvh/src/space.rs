@@ -57,7 +57,7 @@ impl Space {
         }
     }
 
-    /// Returns the padded box.
+    /// The padded box.
     pub(crate) fn padded(&self, [low, high]: [DVec3; 2]) -> Aabb {
         let (low, high) = (
             low - self.center - self.padding,
@@ -71,19 +71,19 @@ impl Space {
         }
     }
 
-    /// Returns a point in the coordinates of triangles in leaves.
+    /// A point in the coordinates of triangles in leaves.
     pub(crate) fn scaled(&self, place: DVec3) -> Vec3A {
         vector(self.unit * (place - self.center))
     }
 
-    /// Returns the position of the centre of a box on a space-filling curve.
+    /// The position of the centre of a box on a space-filling curve.
     pub(crate) fn place(&self, [low, high]: [DVec3; 2]) -> u64 {
         let middle = 0.5 * (low + high) - self.center;
         // The coordinates are in the range from 0 to below 1.
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns the distance along a ray at which the traversal begins. This is usually the distance
+    /// The distance along a ray at which the traversal begins. This is usually the distance
     /// `from`. If the point at `from` is far from all boxes, the traversal begins where the ray
     /// comes near the boxes, because f32 would lose precision over a longer distance.
     #[inline(always)]
@@ -118,7 +118,7 @@ impl Space {
         }
     }
 
-    /// Returns a distance in f32, counted from `begin`. If all boxes up to this distance are
+    /// A distance in f32, counted from `begin`. If all boxes up to this distance are
     /// opened, no box up to `at` is missed. The caller computes intersections in f64.
     #[inline]
     pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
@@ -136,7 +136,7 @@ pub(crate) fn vector(v: DVec3) -> Vec3A {
     Vec3A::new(single(v.x), single(v.y), single(v.z))
 }
 
-/// Returns a number in single precision, to find candidates.
+/// A number in single precision, to find candidates.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

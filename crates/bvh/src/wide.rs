@@ -232,7 +232,7 @@ impl Node {
         self.children[place] = child;
     }
 
-    /// Returns the boxes that a ray meets, as a mask with one bit for each box, and the distances
+    /// The boxes that a ray meets, as a mask with one bit for each box, and the distances
     /// at which the boxes begin.
     #[inline(always)]
     fn meets<S: Simd>(&self, simd: S, ray: &NodeRay, until: f32) -> (u32, [f32; WIDTH]) {
@@ -249,7 +249,7 @@ impl Node {
         (u32::try_from(met).unwrap_or_default(), near.into())
     }
 
-    /// Returns the distances along the ray at which it crosses one side of each box.
+    /// The distances along the ray at which it crosses one side of each box.
     #[inline(always)]
     fn crossing<S: Simd>(&self, simd: S, ray: &NodeRay, axis: usize, plane: usize) -> f32x8<S> {
         let plane = f32x8::simd_from(simd, self.planes[plane]);

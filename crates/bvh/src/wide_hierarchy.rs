@@ -40,7 +40,7 @@ impl WidePrimitive {
         }
     }
 
-    /// Returns the corners of a triangle. A box has no such corners, and its NaN corners are never
+    /// The corners of a triangle. A box has no such corners, and its NaN corners are never
     /// rejected.
     fn corners(self) -> [DVec3; 3] {
         match self {
@@ -83,7 +83,7 @@ impl WideHierarchy {
         }
     }
 
-    /// Returns the primitives, in the order in which [`Self::along`] visits them.
+    /// The primitives, in the order in which [`Self::along`] visits them.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order

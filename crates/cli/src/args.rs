@@ -68,7 +68,7 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
     Predict(PredictArgs),
-    /// Compare measured and predicted files; write the files of `run`.
+    /// Compare measured and predicted files; write files as `run` does.
     Compare(CompareArgs),
     /// Print commands that measure a scene in parts on several machines.
     Split(SplitArgs),
@@ -127,7 +127,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Files and help", &["rays", "schema", "completions", "man"]),
 ];
 
-/// Returns the list of the commands for the help text, in groups.
+/// The list of the commands for the help text, in groups.
 fn grouped(command: &clap::Command) -> String {
     let mut list = String::new();
     for (heading, names) in GROUPS {
@@ -147,7 +147,7 @@ fn grouped(command: &clap::Command) -> String {
 }
 
 impl Cli {
-    /// Returns the command-line parser, with its commands in groups.
+    /// The command-line parser, with its commands in groups.
     pub(crate) fn grouped_command() -> clap::Command {
         let command = <Self as CommandFactory>::command();
         let list = grouped(&command);

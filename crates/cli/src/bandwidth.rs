@@ -15,7 +15,7 @@ use etendue_studies::sweep::values::{SweepPoint, points, shown};
 use etendue_studies::sweep::{BandwidthRow, bandwidths, scene_at};
 use std::path::PathBuf;
 
-/// Returns the scene at a point of the sweep, which must have one light.
+/// The scene at a point of the sweep, which must have one light.
 fn one_light(args: &BandwidthArgs, point: &SweepPoint) -> Result<Scene, Failure> {
     let scene = scene_at(&args.scene.source(), point, |run| args.photons.set(run))?;
     limits::check_one_light(&scene, "this command").map(|()| scene)
@@ -69,7 +69,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Returns the rows of all scenes; progress is shown scene by scene if there are several.
+/// The rows of all scenes; progress is shown scene by scene if there are several.
 fn measured_rows(
     args: &BandwidthArgs,
     scenes: &[Scene],
@@ -117,7 +117,7 @@ fn header(args: &BandwidthArgs) -> Vec<String> {
     header
 }
 
-/// Returns a row of the table; cells without a number have the text `none`.
+/// A row of the table; cells without a number have the text `none`.
 fn cells(row: &BandwidthRow, shown: fn(f64) -> String, none: &str) -> Vec<String> {
     let mut cells: Vec<String> = row.point.iter().map(|x| shown(*x)).collect();
     cells.push(row.plane.clone());

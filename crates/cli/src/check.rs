@@ -51,7 +51,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Returns what `check` finds out about a scene, for programs.
+/// What `check` finds out about a scene, for programs.
 fn json(scene: &Scene, theories: &[Applicability], threads: usize) -> Value {
     let planes = scene.planes.iter().zip(theories);
     let planes = planes.map(|(plane, theory)| {
@@ -79,14 +79,14 @@ fn json(scene: &Scene, theories: &[Applicability], threads: usize) -> Value {
     })
 }
 
-/// Returns the seconds of photons, predictions and comparisons as [`seconds`] does, for several
+/// The seconds of photons, predictions and comparisons as [`seconds`] does, for several
 /// threads, and the most bytes that a run of the scene takes.
 fn effort(scene: &Scene, theories: &[Applicability], threads: usize) -> ([f64; 3], f64) {
     let seconds = seconds(scene, theories).map(|seconds| seconds / threads as f64);
     (seconds, Memory::new(scene, theories, threads).total())
 }
 
-/// Returns the approximate time and memory that a run of the scene takes.
+/// The approximate time and memory that a run of the scene takes.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
     let ([photons, predictions, comparisons], bytes) = effort(scene, theories, threads);
     let gigabytes = bytes / 1e9;
@@ -96,7 +96,7 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     )
 }
 
-/// Returns the length of each leg of the path, and the surface at its end.
+/// The length of each leg of the path, and the surface at its end.
 fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {

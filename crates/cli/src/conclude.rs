@@ -88,7 +88,7 @@ fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// Returns the plane with the largest noise, and this noise, if any plane has light.
+/// The plane with the largest noise, and this noise, if any plane has light.
 fn noisiest<'a>(planes: impl Iterator<Item = &'a PlaneReport>) -> Option<(&'a String, f64)> {
     let noise = planes.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
     noise.max_by(|(_, a), (_, b)| a.total_cmp(b))
@@ -112,7 +112,7 @@ fn left_out(planes: &[PlaneReport], target: f64) -> String {
     )
 }
 
-/// Returns the exit code under `--expect`: photons must agree with every exact prediction, and
+/// The exit code under `--expect`: photons must agree with every exact prediction, and
 /// must show that the map of a first-order chain is wrong.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let is_wrong = |plane: &PlaneReport| {
@@ -132,7 +132,7 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     code_of(verdict)
 }
 
-/// Returns the exit code for a verdict.
+/// The exit code for a verdict.
 pub(crate) fn code_of(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Pass => 0,

@@ -25,7 +25,7 @@ pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     }
 }
 
-/// Returns the exit code of a command that failed.
+/// The exit code of a command that failed.
 pub(crate) const fn code_of(kind: FailureKind) -> u8 {
     match kind {
         FailureKind::BadInput => 2,
@@ -33,7 +33,7 @@ pub(crate) const fn code_of(kind: FailureKind) -> u8 {
     }
 }
 
-/// Returns the exit code for the outcome of a command. Prints the message of a failure unless
+/// The exit code for the outcome of a command. Prints the message of a failure unless
 /// `quiet` is set, because another process then prints this message.
 pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
     match outcome {

@@ -63,7 +63,7 @@ fn written(outcome: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Returns a text with its verdicts in colour: the word after `verdict: `, and the last word of the
+/// A text with its verdicts in colour: the word after `verdict: `, and the last word of the
 /// row of a table.
 fn colored(text: &str) -> String {
     let line = |line: &str| {

@@ -100,7 +100,7 @@ impl Bar<'_> {
     }
 }
 
-/// Returns the time that the remaining steps take, if they take as long as those since the first
+/// The time that the remaining steps take, if they take as long as those since the first
 /// progress. `steps` are the steps at the first progress, now, and in all.
 fn remaining(elapsed: Duration, [before, done, total]: [u64; 3]) -> Option<Duration> {
     let [since, left] = [done.checked_sub(before)?, total.checked_sub(done)?];
@@ -129,7 +129,7 @@ impl Progress for Bar<'_> {
     }
 }
 
-/// Returns a progress bar with the number of traced photons, their rate and the remaining time.
+/// A progress bar with the number of traced photons, their rate and the remaining time.
 /// The bar is shown only on a terminal.
 pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     if quiet {
@@ -148,7 +148,7 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Returns a progress bar with the number of finished steps, the name of the current step and the
+/// A progress bar with the number of finished steps, the name of the current step and the
 /// remaining time. The bar is shown on a terminal if there are several steps.
 pub(crate) fn steps(
     verb: &'static str,
@@ -170,7 +170,7 @@ pub(crate) fn steps(
     bar
 }
 
-/// Returns the progress display of a stage whose length is not known beforehand.
+/// The progress display of a stage whose length is not known beforehand.
 pub(crate) fn stage(name: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();

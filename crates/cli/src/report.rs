@@ -42,7 +42,7 @@ pub(crate) fn write(folders: &[PathBuf], out: &Path, force: bool) -> Result<(), 
     file.write(page(&names.join(", "), &blocks).as_bytes())
 }
 
-/// Returns the relative path from the folder `from` to the folder `folder`, with a trailing /.
+/// The relative path from the folder `from` to the folder `folder`, with a trailing /.
 fn address(folder: &Path, from: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let [folder, from] = [folder, from].map(absolute);

@@ -163,7 +163,7 @@ fn announce(args: &RunArgs, scene: &Scene) {
     }
 }
 
-/// Returns how the arguments ask for the photons to be traced.
+/// How the arguments ask for the photons to be traced.
 fn tracing<'a>(args: &RunArgs, workers: Option<&'a Leader<'a>>, folder: &'a Path) -> Tracing<'a> {
     match args.target_error {
         None => Tracing::Stored(Checkpointing {
@@ -205,7 +205,7 @@ fn finished(args: &RunArgs, scene: &Scene, folder: &Path) -> Option<u8> {
     Some(code_of(verdict))
 }
 
-/// Returns the error for a result folder that was removed in the meantime.
+/// The error for a result folder that was removed in the meantime.
 fn gone(folder: &Path) -> Failure {
     Failure::cannot_run(format!(
         "the result in {} no longer exists",

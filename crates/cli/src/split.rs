@@ -38,7 +38,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Returns a word of a script, quoted for a shell. A line break would end a line of the script, and
+/// A word of a script, quoted for a shell. A line break would end a line of the script, and
 /// could end a here-document.
 fn word(text: &str) -> Result<String, Failure> {
     if text.contains(char::is_control) {
@@ -49,7 +49,7 @@ fn word(text: &str) -> Result<String, Failure> {
     Ok(shell_word(text))
 }
 
-/// Returns the scene and the measurement options as words of a command line.
+/// The scene and the measurement options as words of a command line.
 fn scene_words(args: &SplitArgs) -> Result<String, Failure> {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
     for (path, value) in &args.scene.set {
@@ -106,7 +106,7 @@ impl SplitWork {
         )
     }
 
-    /// Returns the commands for the parts, followed by the commands to run after all parts are
+    /// The commands for the parts, followed by the commands to run after all parts are
     /// finished.
     fn commands(&self) -> String {
         let Self { parts, batches, .. } = self;
@@ -119,7 +119,7 @@ impl SplitWork {
         each.chain(after).collect::<Vec<_>>().join("\n")
     }
 
-    /// Returns a script that submits the commands to Slurm.
+    /// A script that submits the commands to Slurm.
     fn slurm(&self) -> String {
         let Self {
             name,

@@ -5,7 +5,7 @@
 use crate::common::{SCENE, fails, files, passes, refused, scene};
 use std::fs;
 
-/// Returns a folder with a scene of the repository as `glossy.ron`, and a scene without a glossy
+/// A folder with a scene of the repository as `glossy.ron`, and a scene without a glossy
 /// surface as `small.ron`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -48,7 +48,7 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// Returns the exit code and the text of a run of a scene.
+/// The exit code and the text of a run of a scene.
 fn run_by(name: &str, method: &str) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().unwrap();
     let mut command = etendue();

@@ -59,7 +59,7 @@ fn refused_with(folder: &Path, file: &str, bytes: &[u8], parts: &[&str]) {
     refused(folder, COMPARE, &[&[file], parts].concat());
 }
 
-/// Returns the NPZ file with an array replaced, or without this array.
+/// The NPZ file with an array replaced, or without this array.
 fn with_array(npz: &[u8], name: &str, content: Option<&[u8]>) -> Vec<u8> {
     let mut old = ZipArchive::new(Cursor::new(npz)).unwrap();
     let mut new = ZipWriter::new(Cursor::new(Vec::new()));
@@ -77,7 +77,7 @@ fn with_array(npz: &[u8], name: &str, content: Option<&[u8]>) -> Vec<u8> {
     new.finish().unwrap().into_inner()
 }
 
-/// Returns the bytes of an NPY file with an array.
+/// The bytes of an NPY file with an array.
 fn npy<A: WritableElement>(array: &ArrayD<A>) -> Vec<u8> {
     let mut bytes = Vec::new();
     array.write_npy(&mut bytes).unwrap();

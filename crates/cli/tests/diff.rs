@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Returns a folder with the small scene, with enough photons for a verdict, and several runs of
+/// A folder with the small scene, with enough photons for a verdict, and several runs of
 /// this scene, each in its own folder.
 fn runs(each: &[&str]) -> TempDir {
     let folder = small();
@@ -25,7 +25,7 @@ fn runs(each: &[&str]) -> TempDir {
     folder
 }
 
-/// Returns the exit code and the text of `etendue diff`.
+/// The exit code and the text of `etendue diff`.
 fn diff(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     let output = loud(folder, &format!("diff {arguments}"));
     assert!(output.stderr.is_empty(), "{output:?}");

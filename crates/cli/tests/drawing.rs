@@ -6,7 +6,7 @@ use crate::common;
 use crate::common::told;
 use std::fs;
 
-/// Returns the drawing of a scene of the repository, as SVG.
+/// The drawing of a scene of the repository, as SVG.
 fn drawing(scene: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let scene = common::scene(&format!("{scene}.ron"));

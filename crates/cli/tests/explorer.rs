@@ -10,7 +10,7 @@ use ndarray_npy::NpzReader;
 use std::fs::{self, File};
 use std::path::Path;
 
-/// Returns the prediction of `etendue predict` at a plane.
+/// The prediction of `etendue predict` at a plane.
 fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) {
     let path = folder.join(plane.name()).join("prediction.npz");
     let mut file = NpzReader::new(File::open(path).unwrap()).unwrap();
@@ -20,7 +20,7 @@ fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) 
     )
 }
 
-/// Returns the largest difference between the slices at azimuth 0, and the largest difference
+/// The largest difference between the slices at azimuth 0, and the largest difference
 /// between the pictures. Each is divided by the largest value.
 fn apart(
     (slices, field): &(Slices, Projection),

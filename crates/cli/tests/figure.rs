@@ -138,7 +138,7 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
     );
 }
 
-/// Returns a folder with a scene, the same scene with narrower blockers, and a style file.
+/// A folder with a scene, the same scene with narrower blockers, and a style file.
 fn own() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();

@@ -33,7 +33,7 @@ fn send(signal: &str, to: &Child) {
     assert!(sent.unwrap().success());
 }
 
-/// Returns the exit code of a process, if it ends soon.
+/// The exit code of a process, if it ends soon.
 fn code(child: &mut Child) -> Option<i32> {
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(30) {

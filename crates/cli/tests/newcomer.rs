@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Returns the JSON that is the whole standard output of a command.
+/// The JSON that is the whole standard output of a command.
 fn tree(path: &Path, line: &str, code: i32) -> Value {
     serde_json::from_str(&told(path, line, code)).unwrap()
 }

@@ -267,7 +267,7 @@ fn a_move_that_was_cut_short_is_ended() {
     }
 }
 
-/// Returns the arguments quoted for a shell.
+/// The arguments quoted for a shell.
 fn quoted(arguments: &str) -> String {
     let words = arguments.split(' ').map(|word| format!("'{word}'"));
     words.collect::<Vec<_>>().join(" ")

@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Returns rays from a chip of 2 mm. Each ray starts at its own height with its own power, and a
+/// Rays from a chip of 2 mm. Each ray starts at its own height with its own power, and a
 /// third of the rays go sideways or back.
 fn rays(unit: PowerUnit) -> RaySet {
     let count = 3000;
@@ -46,7 +46,7 @@ fn rays(unit: PowerUnit) -> RaySet {
     }
 }
 
-/// Returns a folder with the rays as a file of each format.
+/// A folder with the rays as a file of each format.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, format, unit) in [
@@ -62,7 +62,7 @@ fn folder() -> TempDir {
     folder
 }
 
-/// Returns the scene of the repository with some of its text replaced. The scene has so many
+/// The scene of the repository with some of its text replaced. The scene has so many
 /// photons that the noise is a few per cent.
 fn text(edits: &[(&str, &str)]) -> String {
     let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Returns a folder with two rays as `two.tm25ray`, and half of that file as `half.tm25ray`.
+/// A folder with two rays as `two.tm25ray`, and half of that file as `half.tm25ray`.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let set = RaySet {

@@ -6,7 +6,7 @@ use crate::common::{SCENE, call, json, loud, passes, sealed, small, told};
 use std::fs;
 use std::path::Path;
 
-/// Returns a folder with the runs `a` and `b`. Run `a` has the small scene. Run `b` has the same
+/// A folder with the runs `a` and `b`. Run `a` has the small scene. Run `b` has the same
 /// scene with another pitch, and with a name that would close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = small();
@@ -25,7 +25,7 @@ fn runs() -> tempfile::TempDir {
     folder
 }
 
-/// Returns the contents of the data tags of a page, parsed as JSON.
+/// The contents of the data tags of a page, parsed as JSON.
 fn data(page: &Path) -> Vec<serde_json::Value> {
     let text = fs::read_to_string(page).unwrap();
     let blocks = text.split("class=\"run-data\">").skip(1);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 
-/// Returns a folder with the scene and, in `whole`, the result of an uninterrupted run.
+/// A folder with the scene and, in `whole`, the result of an uninterrupted run.
 fn folder() -> tempfile::TempDir {
     let folder = small();
     passes(folder.path(), format!("{RUN} --out whole"));
@@ -29,12 +29,12 @@ fn is_whole(folder: &Path, out: &str) {
     assert!(found == whole, "the bytes of {out} are those of one run");
 }
 
-/// Returns the paths of the batches that a run has stored, or is about to store.
+/// The paths of the batches that a run has stored, or is about to store.
 fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
     left(folder, out, "batch")
 }
 
-/// Returns the batch files whose names end in `end`.
+/// The batch files whose names end in `end`.
 fn left(folder: &Path, out: &str, end: &str) -> Vec<PathBuf> {
     let below = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten();
     let keys = below(folder.join(out).join("batches"));
@@ -173,7 +173,7 @@ fn what_another_process_ends_is_not_begun_anew() {
 /// A command for a run whose batches take minutes each.
 const LONG: &str = "run small.ron --photons 2^36 --out long";
 
-/// Returns the exit code and the errors of a long run that ends by itself.
+/// The exit code and the errors of a long run that ends by itself.
 fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     let mut child = etendue()
         .current_dir(folder)
@@ -199,7 +199,7 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     (output.status.code(), message)
 }
 
-/// Returns the number of stored parts of unfinished batches.
+/// The number of stored parts of unfinished batches.
 fn parts(folder: &Path) -> u32 {
     let names = left(folder, "long", "begun").into_iter();
     let parts = names.map(|path| {

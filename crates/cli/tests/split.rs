@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// Returns a folder with a scene whose name needs quoting and, in `whole`, the result of one run.
+/// A folder with a scene whose name needs quoting and, in `whole`, the result of one run.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("my scene.ron"), SCENE).unwrap();

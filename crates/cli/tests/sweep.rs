@@ -10,7 +10,7 @@ use std::path::Path;
 
 const PITCH: &str = "sweep small.ron --photons 4096 --out s --set blockers.0.pitch=0.05..0.2:4";
 
-/// Returns the rows of a table, each by column name.
+/// The rows of a table, each by column name.
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(file).unwrap();
     reader.deserialize().map(Result::unwrap).collect()

@@ -8,7 +8,7 @@ use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
 
-/// Returns a folder with the small scene, in which some text is replaced.
+/// A folder with the small scene, in which some text is replaced.
 fn folder(edits: &[(&str, &str)]) -> tempfile::TempDir {
     let mut text = SCENE.to_owned();
     for (from, to) in edits {

@@ -32,7 +32,7 @@ const EVEN_FLOOR: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// Returns a folder with the room scene, in which `from` is replaced by `to`.
+/// A folder with the room scene, in which `from` is replaced by `to`.
 fn folder(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert!(ROOM.contains(from));
@@ -174,7 +174,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     );
 }
 
-/// Returns a BMP picture of one row, whose levels are those of a period of two waves about ½.
+/// A BMP picture of one row, whose levels are those of a period of two waves about ½.
 fn waves(amplitudes: [f64; 2], cycles: [f64; 2]) -> Vec<u8> {
     const WIDTH: u8 = 128;
     let level = |i: u8| {
@@ -347,7 +347,7 @@ fn what_is_asked_must_be_there() {
     );
 }
 
-/// Returns a square of 2 n² triangles, as a binary PLY file.
+/// A square of 2 n² triangles, as a binary PLY file.
 fn square(n: u32) -> Vec<u8> {
     let vertices = (n + 1) * (n + 1);
     let mut bytes = format!(

@@ -64,7 +64,7 @@ impl Agreement {
         self.relative(self.difference - self.noise)
     }
 
-    /// Returns the noise relative to the larger of the measured and predicted spectra.
+    /// The noise relative to the larger of the measured and predicted spectra.
     pub(crate) fn resolution(&self) -> f64 {
         (self.noise / self.predicted.max(self.measured)).sqrt()
     }
@@ -80,7 +80,7 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Returns the number of photons at which the noise would equal the resolution. Returns `None`
+    /// The number of photons at which the noise would equal the resolution. Returns `None`
     /// if the error of the prediction exceeds the resolution by itself, or if the noise is low
     /// enough for a verdict.
     pub(crate) fn photons_needed(

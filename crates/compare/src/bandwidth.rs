@@ -6,7 +6,7 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::PlanarLobe;
 
-/// Returns Ω_ρ in cycles per radian: the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of
+/// Ω_ρ in cycles per radian: the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of
 /// its energy. Returns `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
@@ -19,7 +19,7 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// Returns the bandwidth along ν that was measured at plane `index`, and the error of this
+/// The bandwidth along ν that was measured at plane `index`, and the error of this
 /// bandwidth. Returns `None` where no light arrived.
 ///
 /// # Errors

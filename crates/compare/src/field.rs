@@ -21,7 +21,7 @@ pub enum PredictedField {
 }
 
 impl PredictedField {
-    /// Returns the spectrum of another measurement, where no theory applies.
+    /// The spectrum of another measurement, where no theory applies.
     #[must_use]
     pub fn reference(groups: Vec<FieldGroup>) -> Self {
         let scaled = groups.into_iter().map(|FieldGroup { share, spectrum }| {
@@ -31,7 +31,7 @@ impl PredictedField {
         Self::Sampled(scaled.collect())
     }
 
-    /// Returns the predicted spectra: one for an exact prediction, or one for each group.
+    /// The predicted spectra: one for an exact prediction, or one for each group.
     pub(crate) fn spectra(&self) -> &[FieldSpectrum] {
         match self {
             Self::Exact { spectrum, .. } => std::slice::from_ref(spectrum.as_ref()),

@@ -77,7 +77,7 @@ const MAX_ERROR: f64 = 0.5;
 const NINETY_FIVE: f64 = 1.645;
 
 impl FirstOrderChain {
-    /// Returns the verdict on the chain. The chain fails if a map is wrong, and is undecided if its
+    /// The verdict on the chain. The chain fails if a map is wrong, and is undecided if its
     /// error is too large for a useful prediction.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
@@ -92,7 +92,7 @@ impl FirstOrderChain {
 }
 
 impl FirstOrderReport {
-    /// Returns the square of `excess`, with the sign of `excess`, and the standard error of this
+    /// The square of `excess`, with the sign of `excess`, and the standard error of this
     /// square.
     #[must_use]
     pub fn squared_excess(&self) -> Option<[f64; 2]> {

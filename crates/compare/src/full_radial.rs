@@ -68,7 +68,7 @@ impl FullRadialReport {
     }
 }
 
-/// Returns the report, the predicted power and σ of the difference, for the groups of a
+/// The report, the predicted power and σ of the difference, for the groups of a
 /// measurement.
 fn compared(
     bins: &RadialBins,

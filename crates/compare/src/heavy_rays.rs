@@ -2,7 +2,7 @@
 
 use etendue_field::Slices;
 
-/// Returns how many rays of equal weight each batch would need for its light to vary as much as
+/// How many rays of equal weight each batch would need for its light to vary as much as
 /// measured. Returns `None` if this number is so large that no batch would be empty.
 ///
 /// With n equal rays, the relative variance is 1/n, and R e⁻ⁿ of R batches are empty. With fewer

@@ -6,7 +6,7 @@ use crate::prediction::{PredictedParameter, Prediction};
 use etendue_field::{Projection, Slices};
 
 impl Prediction {
-    /// Returns the first-order chain of the sum of lights. The light of parallel planes is its own
+    /// The first-order chain of the sum of lights. The light of parallel planes is its own
     /// chain. Returns `None` if no light has a first-order chain, or a light has no chain at all.
     ///
     /// The sum has the largest defect of its lights, because no map may be wrong. The matrix and the
@@ -120,7 +120,7 @@ fn replicated(of: &Prediction) -> Replicated<'_> {
     (&of.slices, &of.replicates)
 }
 
-/// Returns the replicates of a sum. A light without replicates has the same slices in each.
+/// The replicates of a sum. A light without replicates has the same slices in each.
 fn replicates(a: Replicated<'_>, b: Replicated<'_>) -> Vec<Slices> {
     let with = |of: &[Slices], all: &Slices| of.iter().map(|one| sum(one, all)).collect();
     match (a, b) {
@@ -131,7 +131,7 @@ fn replicates(a: Replicated<'_>, b: Replicated<'_>) -> Vec<Slices> {
     }
 }
 
-/// Returns the standard error of the mean of replicates, relative to the mean. It is infinite if
+/// The standard error of the mean of replicates, relative to the mean. It is infinite if
 /// the mean is zero.
 fn standard_error(replicates: &[Slices], mean: &Slices) -> f64 {
     let squares = replicates.iter().map(|one| {

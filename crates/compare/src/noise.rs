@@ -4,7 +4,7 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the effective number n of independent real numbers in the noise of plane `plane`. If the
+/// The effective number n of independent real numbers in the noise of plane `plane`. If the
 /// noise at each frequency is divided by its σ, the mean square of the noise fluctuates as much as
 /// the mean square of n normal numbers.
 ///
@@ -29,7 +29,7 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// Returns the effective number of independent real numbers. `centred` holds the difference between
+/// The effective number of independent real numbers. `centred` holds the difference between
 /// each batch and the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
     // tr Ĉ and tr Ĉ² are computed from the matrix of products, which has the same non-zero

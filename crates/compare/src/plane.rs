@@ -202,7 +202,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Returns why the comparison is undecided, in words; `None` where it is decided.
+    /// Why the comparison is undecided, in words; `None` where it is decided.
     fn undecided_reason(
         &self,
         agreement: &Agreement,
@@ -291,7 +291,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Returns the number of photons with which the comparison would be decided. Returns `None`
+    /// The number of photons with which the comparison would be decided. Returns `None`
     /// where this number is not known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
@@ -319,7 +319,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Returns how many rays of equal weight would vary as much as the rays of a batch, or as the
+    /// How many rays of equal weight would vary as much as the rays of a batch, or as the
     /// rays of a replicate of the prediction. Returns `None` if this number is large enough for a
     /// test, or if measurement and prediction agree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
@@ -414,14 +414,14 @@ impl ComparedSides<'_> {
             .collect()
     }
 
-    /// Returns ‖error‖ of a prediction by quadrature, over the independent frequencies.
+    /// ‖error‖ of a prediction by quadrature, over the independent frequencies.
     fn numerical_error(&self) -> f64 {
         let half = &self.predicted.half;
         let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum changes s
+    /// The shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum changes s
     /// by at most 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
@@ -500,7 +500,7 @@ impl ComparedSides<'_> {
     }
 }
 
-/// Returns the second moments of the photons, and their prediction.
+/// The second moments of the photons, and their prediction.
 fn covariance(
     measurement: &Measurement,
     index: usize,
@@ -527,7 +527,7 @@ fn rounded(photons: f64) -> f64 {
     (wanted / unit).ceil() * unit
 }
 
-/// Returns the predicted slices, set to zero where they are the rounding errors of a dark field.
+/// The predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
     if largest(&prediction.slices.half) <= least {
@@ -541,7 +541,7 @@ fn without_rounding(prediction: &Prediction) -> Slices {
 /// warning.
 const BORDER: f64 = 1e-2;
 
-/// Returns the limits of the measurement, in words.
+/// The limits of the measurement, in words.
 fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some((error, noise)) = blur.filter(|(error, noise)| *error > UNSEEN * noise) {

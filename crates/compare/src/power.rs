@@ -69,23 +69,23 @@ impl BinDifference {
         }
     }
 
-    /// Returns the terms of U: first those of each group, then those of pairs of groups.
+    /// The terms of U: first those of each group, then those of pairs of groups.
     fn terms(&self) -> impl Iterator<Item = f64> {
         self.linear.iter().chain(&self.pairs).copied()
     }
 
-    /// Returns the variance of U over all choices of signs.
+    /// The variance of U over all choices of signs.
     pub(crate) fn variance(&self) -> f64 {
         self.terms().map(|term| term * term).sum()
     }
 
-    /// Returns the variance over all choices of signs of the terms of pairs.
+    /// The variance over all choices of signs of the terms of pairs.
     pub(crate) fn variance_of_pairs(&self) -> f64 {
         self.pairs.iter().map(|term| term * term).sum()
     }
 }
 
-/// Returns Σ_r |G_r − a_r G|², from the products of the groups.
+/// Σ_r |G_r − a_r G|², from the products of the groups.
 fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     let n = a.len();
     let row = |r: usize| (0..n).map(|s| product(r, s)).sum::<f64>();
@@ -94,7 +94,7 @@ fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     each.sum::<f64>().max(0.0)
 }
 
-/// Returns the mean product of two different groups, which is the power without noise. The groups
+/// The mean product of two different groups, which is the power without noise. The groups
 /// are counted from number `first` on.
 pub(crate) fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
     let all = products.indexed_iter();
@@ -164,7 +164,7 @@ impl PowerSums {
         }
     }
 
-    /// Returns every number. `seed` is the seed of the random signs of the p-value.
+    /// Every number. `seed` is the seed of the random signs of the p-value.
     pub(crate) fn report(&self, seed: u64) -> PowerReport {
         let [difference, variance, predicted] = self.squares;
         let relative = |square: f64| (predicted > 0.0).then(|| (square / predicted).sqrt());
@@ -179,7 +179,7 @@ impl PowerSums {
     }
 }
 
-/// Returns the factors φ of the terms of U: the signs, and the products of two signs.
+/// The factors φ of the terms of U: the signs, and the products of two signs.
 fn with_products<const N: usize>(mut signs: Vec<[f64; N]>) -> Vec<[f64; N]> {
     let pairs = (0..signs.len()).flat_map(|r| (0..r).map(move |s| [r, s]));
     let product = |[r, s]: [usize; 2]| std::array::from_fn(|lane| signs[r][lane] * signs[s][lane]);
@@ -197,7 +197,7 @@ mod tests {
         each.collect()
     }
 
-    /// Returns the products of the spectra in one bin of two frequencies. The spectra belong to the
+    /// The products of the spectra in one bin of two frequencies. The spectra belong to the
     /// groups of a measurement and to a prediction.
     fn products(exact: bool) -> (Array2<f64>, Vec<f64>, f64) {
         let shares = vec![0.25, 0.25, 0.3, 0.2];
@@ -241,7 +241,7 @@ mod tests {
         }
     }
 
-    /// Returns U with the given signs of the D_r.
+    /// U with the given signs of the D_r.
     fn with_signs(difference: &BinDifference, signs: [f64; 4]) -> f64 {
         let factors = with_products(signs.map(|sign| [sign]).to_vec());
         difference.terms().zip(factors).map(|(t, [f])| t * f).sum()

@@ -67,19 +67,19 @@ impl Prediction {
         !self.replicates.is_empty()
     }
 
-    /// Returns ‖error‖/‖slices‖ for the errors that replicates do not show.
+    /// ‖error‖/‖slices‖ for the errors that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
         both(both(quadrature, self.rule_error), self.mesh_error)
     }
 
-    /// Returns ‖error‖/‖slices‖ as estimated from the replicates of theory. This error does not
+    /// ‖error‖/‖slices‖ as estimated from the replicates of theory. This error does not
     /// shrink with more photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// Returns the combined ‖error‖/‖slices‖ of all kinds of error.
+    /// The combined ‖error‖/‖slices‖ of all kinds of error.
     pub(crate) fn error(&self) -> Option<f64> {
         both(
             both(self.quadrature_error, self.rule_error),
@@ -87,7 +87,7 @@ impl Prediction {
         )
     }
 
-    /// Returns a plane of a measurement in the form of a prediction. Another, independent
+    /// A plane of a measurement in the form of a prediction. Another, independent
     /// measurement is compared with it.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl Prediction {
     }
 }
 
-/// Returns the root of the sum of squares of two errors.
+/// The root of the sum of squares of two errors.
 fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(libm::hypot(a, b)),

@@ -72,7 +72,7 @@ impl<'a> RadialTest<'a> {
         }
     }
 
-    /// Returns every number of the test. `forgiven` is subtracted from the measured slices: a part
+    /// Every number of the test. `forgiven` is subtracted from the measured slices: a part
     /// of the difference that systematic errors may cause.
     pub(crate) fn report(&self, forgiven: Option<&Array3<Complex>>, seed: u64) -> PowerReport {
         let rho = 0..self.prediction.grid.half_shape()[1];
@@ -83,7 +83,7 @@ impl<'a> RadialTest<'a> {
         sums.report(seed)
     }
 
-    /// Returns the sums over the bins of one ρ.
+    /// The sums over the bins of one ρ.
     fn sums(&self, rho: usize, forgiven: Option<&Array3<Complex>>) -> PowerSums {
         let (grid, groups) = (&self.prediction.grid, self.shares.len());
         let mut sums = PowerSums::new(groups);
@@ -117,7 +117,7 @@ impl<'a> RadialTest<'a> {
         sums
     }
 
-    /// Returns the variance of 2 F·(S − F) at a frequency, from the scatter within groups. Returns
+    /// The variance of 2 F·(S − F) at a frequency, from the scatter within groups. Returns
     /// `None` if a group has a single member.
     ///
     /// A wrong prediction moves all batches of a group alike, so it does not raise this variance.
@@ -152,26 +152,26 @@ fn groups<'s, 'a>(
     (0..count).map(move |group| &slices[group * all / count..(group + 1) * all / count])
 }
 
-/// Returns the sum of some slices divided by `all`.
+/// The sum of some slices divided by `all`.
 fn sum(members: &[&Slices], all: usize) -> Array3<Complex> {
     let mut sum = Array3::zeros(members[0].half.raw_dim());
     members.iter().for_each(|slices| sum += &slices.half);
     sum / Complex::from(all as f64)
 }
 
-/// Returns the values at a frequency [ρ, ν] at all azimuths.
+/// The values at a frequency [ρ, ν] at all azimuths.
 fn values(half: &Array3<Complex>, [rho, nu]: [usize; 2]) -> Vec<Complex> {
     let row = half.index_axis(Axis(1), rho);
     row.index_axis(Axis(1), nu).to_vec()
 }
 
-/// Returns the mean over azimuths of Re(a conj b).
+/// The mean over azimuths of Re(a conj b).
 fn dot(a: &[Complex], b: &[Complex]) -> f64 {
     let products = a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im);
     products.sum::<f64>() / a.len() as f64
 }
 
-/// Returns the products of spectra at one frequency.
+/// The products of spectra at one frequency.
 fn products(spectra: &[Vec<Complex>]) -> Array2<f64> {
     let mut products = Array2::zeros((spectra.len(), spectra.len()));
     for (i, a) in spectra.iter().enumerate() {

@@ -176,7 +176,7 @@ pub struct PlaneReport {
 }
 
 impl PlaneReport {
-    /// Returns the verdict on the exact prediction. This verdict does not depend on the verdict on
+    /// The verdict on the exact prediction. This verdict does not depend on the verdict on
     /// a first-order chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {

@@ -43,7 +43,7 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// Returns the differences between plane `plane` of a measurement and slices without
+    /// The differences between plane `plane` of a measurement and slices without
     /// statistical error.
     ///
     /// # Panics
@@ -60,7 +60,7 @@ impl Residuals {
         }
     }
 
-    /// Returns the differences between a measurement and slices that are the mean of replicates.
+    /// The differences between a measurement and slices that are the mean of replicates.
     /// The slices are exact if there are no replicates.
     ///
     /// There are n = min(B, R) groups. Each group g holds a share of the B batches and of the R
@@ -104,7 +104,7 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// Returns the differences between the measurement and the closest spectrum near the
+    /// The differences between the measurement and the closest spectrum near the
     /// prediction. At each frequency, this spectrum differs from F by at most `error`|F| plus the
     /// error of the fast transform, which is relative to the largest F.
     #[must_use]
@@ -112,7 +112,7 @@ impl Residuals {
         self.without(&self.forgiven(prediction, error))
     }
 
-    /// Returns the residuals with a part of their mean subtracted from each.
+    /// The residuals with a part of their mean subtracted from each.
     pub(crate) fn without(&self, part: &Array3<Complex>) -> Self {
         let parts = self.parts.iter().map(|residual| residual - part);
         Self {
@@ -121,7 +121,7 @@ impl Residuals {
         }
     }
 
-    /// Returns the part of the mean residual that [`Self::forgiving`] removes.
+    /// The part of the mean residual that [`Self::forgiving`] removes.
     pub(crate) fn forgiven(&self, prediction: &Slices, error: f64) -> Array3<Complex> {
         let mut moved = self.mean();
         let of_transform = TRANSFORM * largest(&prediction.half);
@@ -134,18 +134,18 @@ impl Residuals {
         moved
     }
 
-    /// Returns the number of residuals R.
+    /// The number of residuals R.
     #[must_use]
     pub fn count(&self) -> usize {
         self.parts.len()
     }
 
-    /// Returns each residual, [azimuth, ρ ≥ 0, ν].
+    /// Each residual, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn each(&self) -> impl Iterator<Item = &Array3<Complex>> {
         self.parts.iter()
     }
 
-    /// Returns S − F, [azimuth, ρ ≥ 0, ν].
+    /// S − F, [azimuth, ρ ≥ 0, ν].
     #[must_use]
     pub fn mean(&self) -> Array3<Complex> {
         let mut sum = Array3::zeros(self.grid.half_shape());
@@ -155,7 +155,7 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// Returns the variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
+    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
     #[must_use]
     pub fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
@@ -169,7 +169,7 @@ impl Residuals {
         variance / (self.count() * (self.count() - 1)) as f64
     }
 
-    /// Returns the independent cells of an array on the half-plane, in the same order for all
+    /// The independent cells of an array on the half-plane, in the same order for all
     /// arrays.
     fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
         let grid = self.grid;
@@ -179,13 +179,13 @@ impl Residuals {
             .map(|(_, value)| value)
     }
 
-    /// Returns the number of independent frequencies.
+    /// The number of independent frequencies.
     #[must_use]
     pub fn frequencies(&self) -> usize {
         self.cells(&self.parts[0]).count()
     }
 
-    /// Returns the sum of `term` over the independent frequencies of two arrays.
+    /// The sum of `term` over the independent frequencies of two arrays.
     pub(crate) fn sum<A, B>(
         &self,
         a: &Array3<A>,
@@ -217,7 +217,7 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Returns the standard deviation, [ρ, ν], of measured minus predicted radial power, if F is
+    /// The standard deviation, [ρ, ν], of measured minus predicted radial power, if F is
     /// true.
     ///
     /// The difference is |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the
@@ -249,7 +249,7 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Returns the [R, R] matrix H_bc = Σ Re(r_b conj r_c) / s, where the sum runs over the
+    /// The [R, R] matrix H_bc = Σ Re(r_b conj r_c) / s, where the sum runs over the
     /// frequencies. At each frequency, s is 1, or Σ_b |r_b|² if `normalised` is set.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
@@ -278,7 +278,7 @@ impl Residuals {
         products
     }
 
-    /// Returns ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and the delete-one
+    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and the delete-one
     /// jackknife error of this value (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
@@ -297,7 +297,7 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Returns the standard error of [`Self::squared`] if every residual has mean zero. If every
+    /// The standard error of [`Self::squared`] if every residual has mean zero. If every
     /// mean is zero, the terms of the sum are uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
@@ -307,7 +307,7 @@ impl Residuals {
         (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
     }
 
-    /// Returns the real and imaginary parts of the independent cells of azimuth `k`, divided by the
+    /// The real and imaginary parts of the independent cells of azimuth `k`, divided by the
     /// root of `scale`.
     fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
         let plane = residual.index_axis(Axis(0), k);
@@ -326,7 +326,7 @@ impl Residuals {
         row
     }
 
-    /// Returns the p-value of the hypothesis that every residual has mean zero.
+    /// The p-value of the hypothesis that every residual has mean zero.
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis, a
     /// residual and its negative are equally likely. Therefore the statistic with random signs has
@@ -343,7 +343,7 @@ impl Residuals {
     }
 }
 
-/// Returns the p-value of a quadratic form of `count` random signs, or of what `factors` makes of
+/// The p-value of a quadratic form of `count` random signs, or of what `factors` makes of
 /// the signs: factors that are 1 or −1. It is the share of rounds in which the form is at least as
 /// large as for signs that are all 1, which count as one round.
 pub(crate) fn p_of_signs(
@@ -374,7 +374,7 @@ fn check(measured: &Slices, predicted: &Slices) {
     );
 }
 
-/// Returns Σ_b<c ε_b ε_c H_bc for several rounds of signs, [b][round]. The diagonal is left out
+/// Σ_b<c ε_b ε_c H_bc for several rounds of signs, [b][round]. The diagonal is left out
 /// because it is the same for all signs.
 fn signed_sums(products: &Array2<f64>, signs: &[[f64; LANES]]) -> [f64; LANES] {
     let mut sums = [0.0; LANES];
@@ -392,7 +392,7 @@ fn signed_sums(products: &Array2<f64>, signs: &[[f64; LANES]]) -> [f64; LANES] {
     sums
 }
 
-/// Returns the signs of the rounds from `first` on, [b][round].
+/// The signs of the rounds from `first` on, [b][round].
 fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
     let mut columns = vec![[0.0; LANES]; count];
     for (lane, round) in (first..).take(LANES).enumerate() {
@@ -403,13 +403,13 @@ fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
     columns
 }
 
-/// Returns random signs for the batches of one round.
+/// Random signs for the batches of one round.
 fn signs(seed: u64, round: u64) -> impl Iterator<Item = f64> {
     let words = (0..).flat_map(move |block| random::words(seed, Stream::Flip, round, block));
     words.flat_map(|word| (0..32).map(move |bit| 1.0 - 2.0 * f64::from(word >> bit & 1)))
 }
 
-/// Returns the largest modulus of some slices.
+/// The largest modulus of some slices.
 pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }

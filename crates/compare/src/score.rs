@@ -29,7 +29,7 @@ pub struct ParameterReport {
 /// is the sum of the normal quantiles 2.576 and 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// Returns the score test of one parameter (docs/theory.md, section 6). The test projects S − F on
+/// The score test of one parameter (docs/theory.md, section 6). The test projects S − F on
 /// ∂F/∂parameter, weighted by 1/σ².
 ///
 /// With D = ∂F/∂parameter, the step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares

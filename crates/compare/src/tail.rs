@@ -9,7 +9,7 @@ const MAX_TERMS: u32 = 1_000_000;
 /// rounding error of f64.
 const ROUNDING: f64 = 1e-16;
 
-/// Returns the probability that a χ² variable with `dof` degrees of freedom exceeds `x`. `dof` is
+/// The probability that a χ² variable with `dof` degrees of freedom exceeds `x`. `dof` is
 /// any positive number.
 ///
 /// The probability is Q(dof/2, x/2), the upper regularised incomplete gamma function. Q is computed
@@ -32,7 +32,7 @@ pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
     above.clamp(0.0, 1.0)
 }
 
-/// Returns Σ xⁿ/(a (a + 1) … (a + n)).
+/// Σ xⁿ/(a (a + 1) … (a + n)).
 fn lower_series(a: f64, x: f64) -> f64 {
     let mut term = 1.0 / a;
     let mut sum = term;
@@ -66,7 +66,7 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// Returns the probability that the absolute value of Student's t with `dof` degrees of freedom is
+/// The probability that the absolute value of Student's t with `dof` degrees of freedom is
 /// at least |`t`|.
 ///
 /// The function uses the normal deviate that has about the same tail (Wallace 1959). With at least

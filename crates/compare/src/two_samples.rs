@@ -165,7 +165,7 @@ pub struct Estimate {
     pub batches: usize,
 }
 
-/// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²). Also returns the
+/// The pull of two estimates of one number, (a − b)/√(e_a² + e_b²). Also returns the
 /// probability that the absolute value of the pull is at least this large if both estimates have
 /// the same true value.
 ///

@@ -10,7 +10,7 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, WindowedMean};
 use ndarray::Array3;
 
-/// Returns the bandwidths of a measured power and of a prediction, each in the azimuth where it is
+/// The bandwidths of a measured power and of a prediction, each in the azimuth where it is
 /// largest. `replicates` is the power of a prediction that has replicates.
 pub(crate) fn bandwidth(
     measured: &CrossPower<'_>,
@@ -72,7 +72,7 @@ pub(crate) fn variation(
     Ok(bandwidth(&measured, replicates.as_ref(), &predicted))
 }
 
-/// Returns the bandwidth of slices without a statistical error.
+/// The bandwidth of slices without a statistical error.
 fn exact(slices: &Slices, of: Along) -> Option<Widest<Uncertain>> {
     let power = slices_power(slices);
     let exact = widest(power.view(), &slices.grid, of)?;

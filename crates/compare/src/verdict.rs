@@ -38,7 +38,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the worse of two verdicts. A failure is worse than an undecided result, which is
+    /// The worse of two verdicts. A failure is worse than an undecided result, which is
     /// worse than a pass.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -50,7 +50,7 @@ impl Verdict {
     }
 }
 
-/// Returns the level of each of `tests` tests for which the probability that all tests pass is 1 −
+/// The level of each of `tests` tests for which the probability that all tests pass is 1 −
 /// `alpha` (Šidák 1967).
 #[must_use]
 pub fn sidak(alpha: f64, tests: usize) -> f64 {

@@ -11,7 +11,7 @@ use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
 
 const BATCHES: u32 = 64;
 
-/// Returns a smooth spectrum and its derivative with respect to its width.
+/// A smooth spectrum and its derivative with respect to its width.
 fn spectrum(width: f64) -> [Slices; 2] {
     let grid = plane().grid;
     let mut value = Slices::zeros(grid);
@@ -36,7 +36,7 @@ fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
     noisy(truth, seed, |_| size)
 }
 
-/// Returns a measurement with noise of the given size in each cell.
+/// A measurement with noise of the given size in each cell.
 fn noisy(truth: &Slices, seed: u64, size: impl Fn(usize) -> f64) -> Measurement {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -156,7 +156,7 @@ fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     (0..count).map(replicate).collect()
 }
 
-/// Returns a prediction of a spectrum of the given width, as the mean of replicates.
+/// A prediction of a spectrum of the given width, as the mean of replicates.
 fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     let [truth, _] = spectrum(width);
     let replicates = replicates(&truth, size, count, seed);

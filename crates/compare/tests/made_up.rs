@@ -38,7 +38,7 @@ pub(crate) fn plane() -> VirtualPlane {
     }
 }
 
-/// Returns a complex number whose parts have unit variance: sums of twelve uniform numbers.
+/// A complex number whose parts have unit variance: sums of twelve uniform numbers.
 pub(crate) fn noise(seed: u64, index: u64) -> Complex {
     let part = |from: u32| -> f64 {
         let words = (0..3).flat_map(|b| random::words(seed, Stream::Photon, index, from + b));

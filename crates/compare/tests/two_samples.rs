@@ -14,7 +14,7 @@ use ndarray::Array3;
 const BATCHES: usize = 32;
 const SEEDS: u64 = 200;
 
-/// Returns a smooth spectrum.
+/// A smooth spectrum.
 fn truth() -> Array3<Complex> {
     let grid = plane().grid;
     Array3::from_shape_fn(grid.half_shape(), |(_, m, n)| {
@@ -23,7 +23,7 @@ fn truth() -> Array3<Complex> {
     })
 }
 
-/// Returns slices of one batch: the truth plus noise. Each noise number spreads over three
+/// Slices of one batch: the truth plus noise. Each noise number spreads over three
 /// neighbours along ν with the weights 1/2, 1, 1/2, as with a Hann window. The noise decreases with
 /// ρ.
 fn batch(seed: u64, index: usize, size: f64) -> Slices {
@@ -41,7 +41,7 @@ fn batch(seed: u64, index: usize, size: f64) -> Slices {
     Slices { grid, half }
 }
 
-/// Returns the mean of this many batches and its noise.
+/// The mean of this many batches and its noise.
 fn sample(seed: u64, batches: usize, size: f64) -> Sample {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -77,7 +77,7 @@ fn sample(seed: u64, batches: usize, size: f64) -> Sample {
 
 const SIZE: f64 = 0.2;
 
-/// Returns pairs of independent samples; the noise of the second may differ.
+/// Pairs of independent samples; the noise of the second may differ.
 fn pairs(batches: usize, size: f64) -> Vec<(Sample, Sample)> {
     (0..SEEDS)
         .map(|seed| {
@@ -93,7 +93,7 @@ fn p_values(pairs: &[(Sample, Sample)]) -> Vec<f64> {
     p.map(|test| test.p_value.unwrap()).collect()
 }
 
-/// Returns the largest distance of the distribution of `values` from uniform, in units of 1/√n:
+/// The largest distance of the distribution of `values` from uniform, in units of 1/√n:
 /// 1.63 is exceeded once in a hundred times (Smirnov 1948).
 fn distance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();

@@ -35,7 +35,7 @@ const BROAD: f64 = 1.5;
 /// Maximum number of frequencies on each side of zero. Narrow lobes need this maximum number.
 const MAX_FREQUENCIES: usize = 512;
 
-/// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.
+/// The slice at azimuth 0 of the chain's field after a lobe, under a window.
 ///
 /// # Panics
 /// Panics if the grid has more than one azimuth.
@@ -73,7 +73,7 @@ pub(crate) fn blurred_slices(
     blurred
 }
 
-/// Returns the fraction of light that remains in the window after the lobe blurs slopes along y.
+/// The fraction of light that remains in the window after the lobe blurs slopes along y.
 fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
     let blur = Blur::new(lobe, &window.v);
     let none = FrequencyAxis {
@@ -140,7 +140,7 @@ impl Blur {
         }
     }
 
-    /// Returns the weights with which the spectrum's frequencies q before the lobe contribute to
+    /// The weights with which the spectrum's frequencies q before the lobe contribute to
     /// the frequency ν after the lobe.
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
@@ -150,7 +150,7 @@ impl Blur {
     }
 }
 
-/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. The
+/// The picture of the chain's field after a lobe, like [`projection`] without a lobe. The
 /// lobe is treated as constant over a fraction of a cell, so the picture is accurate to this
 /// fraction of a cell.
 pub(crate) fn blurred_projection(
@@ -176,7 +176,7 @@ pub(crate) fn blurred_projection(
     }
 }
 
-/// Returns the angle beyond which a lobe is below the fraction `share` of its peak.
+/// The angle beyond which a lobe is below the fraction `share` of its peak.
 fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     let least = share * lobe.value(0.0);
     let (mut inside, mut outside) = (0.0, FRAC_PI_2);
@@ -191,7 +191,7 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible. This is the frequency for
+/// A frequency beyond which the spectrum of a lobe is negligible. This is the frequency for
 /// a Gaussian with the same reach. Lobes that end at a right angle have transforms with tails, so
 /// for them the frequency is three times as high.
 fn highest(reach: f64) -> f64 {

@@ -13,7 +13,7 @@ pub const CELLS: usize = 64;
 /// Maximum number of frequencies to each side of zero: more are too slow for interaction.
 const MAX_FREQUENCIES: usize = 160;
 
-/// Returns the light.
+/// The light.
 pub(crate) fn square(setup: &Setup) -> Light {
     let square = Rectangle {
         center: [0.0; 2],
@@ -26,7 +26,7 @@ pub(crate) fn square(setup: &Setup) -> Light {
     }
 }
 
-/// Returns the receiver's lobe.
+/// The receiver's lobe.
 #[must_use]
 pub fn lobe(setup: &Setup) -> PlanarLobe {
     PlanarLobe::Phong {
@@ -34,12 +34,12 @@ pub fn lobe(setup: &Setup) -> PlanarLobe {
     }
 }
 
-/// Returns the position of a blocker along an axis, in pitches from the centre.
+/// The position of a blocker along an axis, in pitches from the centre.
 pub(crate) fn place(i: u32, count: u32) -> f64 {
     f64::from(i) - 0.5 * (f64::from(count) - 1.0)
 }
 
-/// Returns the number of blockers along an axis.
+/// The number of blockers along an axis.
 #[must_use]
 #[expect(
     clippy::cast_possible_truncation,
@@ -50,7 +50,7 @@ pub(crate) fn count(setup: &Setup) -> u32 {
     setup.get(SettingKey::Count).round() as u32
 }
 
-/// Returns the seed of the jitter.
+/// The seed of the jitter.
 #[must_use]
 #[expect(
     clippy::cast_possible_truncation,
@@ -61,7 +61,7 @@ pub(crate) fn seed(setup: &Setup) -> u64 {
     setup.get(SettingKey::Seed).round() as u64
 }
 
-/// Returns the blockers, with positions relative to the central ray.
+/// The blockers, with positions relative to the central ray.
 pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
     let [pitch, fill, jitter] =
@@ -88,7 +88,7 @@ pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
         .collect()
 }
 
-/// Returns the window of all planes.
+/// The window of all planes.
 #[must_use]
 pub(crate) fn window(setup: &Setup) -> Window {
     let [x, u] =
@@ -96,7 +96,7 @@ pub(crate) fn window(setup: &Setup) -> Window {
     Window { x, y: x, u, v: u }
 }
 
-/// Returns the frequencies of all planes.
+/// The frequencies of all planes.
 #[must_use]
 pub fn grid(setup: &Setup) -> SliceGrid {
     let axis = |most: SettingKey, step: SettingKey, half_width: SettingKey| {

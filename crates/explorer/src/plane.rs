@@ -26,7 +26,7 @@ pub enum PathPlace {
 }
 
 impl PathPlace {
-    /// Returns the planes of a scene, in the order of light.
+    /// The planes of a scene, in the order of light.
     #[must_use]
     pub fn all(setup: &Setup) -> Vec<Self> {
         let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
@@ -38,7 +38,7 @@ impl PathPlace {
         all
     }
 
-    /// Returns the name of the plane in the scene file.
+    /// The name of the plane in the scene file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -53,7 +53,7 @@ impl PathPlace {
         }
     }
 
-    /// Returns whether the computation is slow, so that it must run in the background.
+    /// Whether the computation is slow, so that it must run in the background.
     #[must_use]
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Irradiance | Self::Diffuse)

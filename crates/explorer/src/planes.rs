@@ -9,7 +9,7 @@ use etendue_field::{Mask, Projection, ProjectionGrid, Slices};
 use etendue_theory::{Chain, Operator, Source, projection, slices};
 
 impl PathPlace {
-    /// Returns the spectrum slice at azimuth 0.
+    /// The spectrum slice at azimuth 0.
     #[must_use]
     pub fn spectrum(self, setup: &Setup) -> Slices {
         let (window, grid) = (window(setup), grid(setup));
@@ -28,7 +28,7 @@ impl PathPlace {
         }
     }
 
-    /// Returns the light field in (x, u) with this many cells along each axis, its values in rows
+    /// The light field in (x, u) with this many cells along each axis, its values in rows
     /// of constant x.
     #[must_use]
     pub fn field(self, setup: &Setup, cells: usize) -> Projection {
@@ -61,7 +61,7 @@ impl PathPlace {
         Some((found.slices, found.projection))
     }
 
-    /// Returns the chain of operators before this plane, between parallel planes.
+    /// The chain of operators before this plane, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
         let (blockers, receiver) = (
             setup.get(SettingKey::Distance),
@@ -114,7 +114,7 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
     }
 }
 
-/// Returns the chain of the light that arrives at the receiver; the last step of the chain adds
+/// The chain of the light that arrives at the receiver; the last step of the chain adds
 /// `times` · curvature · position to the slopes.
 fn imaged(setup: &Setup, times: f64) -> Chain {
     let chain = PathPlace::Arrived.chain(setup);
@@ -124,7 +124,7 @@ fn imaged(setup: &Setup, times: f64) -> Chain {
         .expect("an even light and opaque blockers")
 }
 
-/// Returns slices in the frame of the surface, in which only positions are reversed: S(ρ, ν) is the
+/// Slices in the frame of the surface, in which only positions are reversed: S(ρ, ν) is the
 /// previous S(−ρ, ν).
 fn on_the_surface(before: &Slices) -> Slices {
     let mut after = before.clone();

@@ -21,7 +21,7 @@ pub(crate) const APERTURE: f64 = 0.6;
 /// target error.
 pub(crate) const AZIMUTHS: usize = 2;
 
-/// Returns the light field at a plane on a glossy receiver by nets of rays, or `None` for other
+/// The light field at a plane on a glossy receiver by nets of rays, or `None` for other
 /// planes.
 pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     let window = window(setup);
@@ -69,7 +69,7 @@ fn masks(setup: &Setup) -> Vec<PathMask> {
     }]
 }
 
-/// Returns the receiver in the frame at the light, facing the light.
+/// The receiver in the frame at the light, facing the light.
 fn patch(setup: &Setup) -> Patch {
     let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {
@@ -85,7 +85,7 @@ fn reflectance(setup: &Setup) -> Reflectance {
     Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
-/// Returns a plane where the central ray meets the receiver. The ray goes straight back, so X is
+/// A plane where the central ray meets the receiver. The ray goes straight back, so X is
 /// reversed.
 fn seen(patch: &Patch, orientation: Orientation, side: Side) -> Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);

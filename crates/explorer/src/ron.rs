@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// Photons of a run that takes a few seconds.
 const PHOTONS: u64 = 4_194_304;
 
-/// Returns the scene file.
+/// The scene file.
 #[must_use]
 pub fn scene(setup: &Setup) -> String {
     let get = |key| setup.get(key);

@@ -260,13 +260,13 @@ impl Default for Setup {
 const CLEARANCE: f64 = 0.02;
 
 impl Setup {
-    /// Returns the value of a setting.
+    /// The value of a setting.
     #[must_use]
     pub fn get(&self, key: SettingKey) -> f64 {
         self.values[key as usize]
     }
 
-    /// Returns whether a setting that is either 0 or 1 has the value 1.
+    /// Whether a setting that is either 0 or 1 has the value 1.
     #[must_use]
     pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5
@@ -291,7 +291,7 @@ impl Setup {
         self.values[SettingKey::Jitter as usize] = jitter;
     }
 
-    /// Returns the key of the setting with this name.
+    /// The key of the setting with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<SettingKey> {
         let mut table = TABLE.iter();
@@ -300,7 +300,7 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// Returns the fragment of a URL, after #: all settings that differ from their defaults; the
+    /// The fragment of a URL, after #: all settings that differ from their defaults; the
     /// fragment is never empty.
     #[must_use]
     pub fn fragment(&self) -> String {

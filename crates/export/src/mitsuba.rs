@@ -81,7 +81,7 @@ pub enum NotInMitsuba {
     },
 }
 
-/// Returns the files of a scene for Mitsuba 3. The files are `scene.xml`, the scene's meshes and
+/// The files of a scene for Mitsuba 3. The files are `scene.xml`, the scene's meshes and
 /// pictures, and `planes.json` with the virtual planes, for which Mitsuba has no element.
 ///
 /// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
@@ -257,7 +257,7 @@ impl Writer {
     }
 }
 
-/// Returns a rectangle as two triangles.
+/// A rectangle as two triangles.
 fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     let [[left, right], [low, high]] = [rectangle.extent(0), rectangle.extent(1)];
     let corner = |x, y| DVec3::new(x, y, distance);
@@ -265,7 +265,7 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// Returns the part of a half-plane that light can reach, with a margin. Light reaches no
+/// The part of a half-plane that light can reach, with a margin. Light reaches no
 /// coordinate of modulus `beyond` or more.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
@@ -280,7 +280,7 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// Returns the part of a bar that light can reach, and other rectangles unchanged. Light reaches no
+/// The part of a bar that light can reach, and other rectangles unchanged. Light reaches no
 /// coordinate of modulus `beyond` or more.
 fn shortened(rectangle: Rectangle, beyond: f64) -> Rectangle {
     let size = rectangle.size.map(|side| {
@@ -293,7 +293,7 @@ fn shortened(rectangle: Rectangle, beyond: f64) -> Rectangle {
     Rectangle { size, ..rectangle }
 }
 
-/// Returns the largest distance from the central ray, along X or Y, of light that goes straight to
+/// The largest distance from the central ray, along X or Y, of light that goes straight to
 /// a window or a surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = scene
@@ -316,14 +316,14 @@ fn reach(scene: &Scene) -> f64 {
     windows.chain(corners).fold(light, f64::max)
 }
 
-/// Returns the name of an object that extends behind the plane of the light.
+/// The name of an object that extends behind the plane of the light.
 fn behind(scene: &Scene) -> Option<String> {
     let mut bodies = bodies(scene);
     let found = bodies.find(|(_, corners)| corners.iter().any(|p| p.z < 0.0));
     found.map(|(name, _)| name.to_owned())
 }
 
-/// Returns the name of each surface, with the corners of a shape that encloses it.
+/// The name of each surface, with the corners of a shape that encloses it.
 fn bodies(scene: &Scene) -> impl Iterator<Item = (&str, Vec<DVec3>)> {
     let surfaces = scene.surfaces.iter();
     let surfaces = surfaces.map(|s| (s.name.as_str(), s.corners().to_vec()));

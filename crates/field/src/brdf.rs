@@ -36,7 +36,7 @@ pub struct Brdf {
 }
 
 impl Brdf {
-    /// Returns a lobe with an albedo and a Fresnel factor, and no other factors.
+    /// A lobe with an albedo and a Fresnel factor, and no other factors.
     #[must_use]
     pub fn new(lobe: Lobe, albedo: f64, fresnel: Fresnel) -> Self {
         Self {
@@ -64,7 +64,7 @@ fn listed<S: Serializer>(values: &Arc<[f64]>, serializer: S) -> Result<S::Ok, S:
 }
 
 impl AngleTable {
-    /// Returns the factor at an angle. The cosine of this angle is given, and is from 0 to 1.
+    /// The factor at an angle. The cosine of this angle is given, and is from 0 to 1.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -110,7 +110,7 @@ impl Lobe {
         !matches!(self, Self::Lambertian)
     }
 
-    /// Returns the lobe's parameter and the name of the parameter.
+    /// The lobe's parameter and the name of the parameter.
     #[must_use]
     pub fn number_mut(&mut self) -> Option<(&'static str, &mut f64)> {
         match self {
@@ -133,7 +133,7 @@ pub enum MicrofacetDistribution {
 }
 
 impl MicrofacetDistribution {
-    /// Returns the lobe of microfacets with this distribution and roughness.
+    /// The lobe of microfacets with this distribution and roughness.
     #[must_use]
     pub fn lobe(self, roughness: f64) -> Lobe {
         match self {

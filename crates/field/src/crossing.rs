@@ -39,7 +39,7 @@ impl Ledger {
         self.stopped += other.stopped;
     }
 
-    /// Returns the ledger times a number.
+    /// The ledger times a number.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -89,10 +89,10 @@ impl PlaneTally {
 /// A source implements [`Self::emit`], or [`Self::emit_part`] and [`Self::parts`] if it divides
 /// batches.
 pub trait PhotonSource: Sync {
-    /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
+    /// The number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Returns whether spectra need the full precision of the transform of rays. If not, the error
+    /// Whether spectra need the full precision of the transform of rays. If not, the error
     /// may be 2·10⁻⁵ of the sum of weights (typically 10⁻⁷), and weights must not be negative. A
     /// source that wraps another one should return the answer of the other one.
     fn is_precise(&self) -> bool {
@@ -115,7 +115,7 @@ pub trait PhotonSource: Sync {
         total
     }
 
-    /// Returns the number of parts into which a batch is divided, so that several threads can emit
+    /// The number of parts into which a batch is divided, so that several threads can emit
     /// one batch. The number is at least one and depends only on the scene.
     fn parts(&self, _batch: u32) -> u32 {
         1

@@ -67,7 +67,7 @@ fn shared<S: Serializer>(map: &Arc<LatLong>, serializer: S) -> Result<S::Ok, S::
 }
 
 impl Environment {
-    /// Returns the radiance of light that travels along a direction of any length, in the
+    /// The radiance of light that travels along a direction of any length, in the
     /// coordinates of the frame at the light.
     #[inline]
     #[must_use]
@@ -75,7 +75,7 @@ impl Environment {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Returns the direction from which light comes if it travels along `along`. The result has
+    /// The direction from which light comes if it travels along `along`. The result has
     /// unit length and is in the coordinates of the map.
     #[inline]
     #[must_use]
@@ -85,7 +85,7 @@ impl Environment {
 }
 
 impl EnvironmentMap {
-    /// Returns the radiance of light that comes from a direction of unit length.
+    /// The radiance of light that comes from a direction of unit length.
     #[inline]
     #[must_use]
     pub fn radiance(&self, from: DVec3) -> f64 {
@@ -97,7 +97,7 @@ impl EnvironmentMap {
 }
 
 impl SphericalGaussian {
-    /// Returns the radiance of the lobe from a direction of unit length.
+    /// The radiance of the lobe from a direction of unit length.
     #[inline]
     #[must_use]
     pub fn radiance_from(&self, from: DVec3) -> f64 {
@@ -106,7 +106,7 @@ impl SphericalGaussian {
         self.radiance * libm::exp(-fall / (self.width * self.width))
     }
 
-    /// Returns the integral of the lobe over all directions, 2π σ² (1 − exp(−2/σ²)) L.
+    /// The integral of the lobe over all directions, 2π σ² (1 − exp(−2/σ²)) L.
     #[must_use]
     pub fn integral(&self) -> f64 {
         let squared = self.width * self.width;
@@ -115,14 +115,14 @@ impl SphericalGaussian {
 }
 
 impl LatLong {
-    /// Returns the map of a picture.
+    /// The map of a picture.
     #[must_use]
     pub fn new(radiance: Raster) -> Self {
         let poles = [0.0, radiance.height() as f64];
         Self { radiance, poles }
     }
 
-    /// Returns the map of a picture in which the centres of the first and the last row are at the
+    /// The map of a picture in which the centres of the first and the last row are at the
     /// poles.
     #[must_use]
     pub fn from_pole_to_pole(radiance: Raster) -> Self {
@@ -133,7 +133,7 @@ impl LatLong {
         Self { radiance, poles }
     }
 
-    /// Returns a map of at least one pixel. The value of each pixel is `radiance` at the direction
+    /// A map of at least one pixel. The value of each pixel is `radiance` at the direction
     /// of the pixel's centre.
     #[must_use]
     pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
@@ -146,19 +146,19 @@ impl LatLong {
         Self::new(raster.unwrap_or_else(|| unreachable!("one value for each pixel")))
     }
 
-    /// Returns the radiance of the pixels.
+    /// The radiance of the pixels.
     #[must_use]
     pub fn raster(&self) -> &Raster {
         &self.radiance
     }
 
-    /// Returns the distances of the upper and the lower pole from the top of the raster, in pixels.
+    /// The distances of the upper and the lower pole from the top of the raster, in pixels.
     #[must_use]
     pub fn poles(&self) -> [f64; 2] {
         self.poles
     }
 
-    /// Returns the position of a direction on the raster, in pixels from the left and from the top.
+    /// The position of a direction on the raster, in pixels from the left and from the top.
     #[inline]
     #[must_use]
     pub fn place(&self, from: DVec3) -> [f64; 2] {
@@ -170,14 +170,14 @@ impl LatLong {
         [width * (0.5 - longitude / TAU), top + down]
     }
 
-    /// Returns the direction of a position on the raster, of unit length.
+    /// The direction of a position on the raster, of unit length.
     #[inline]
     #[must_use]
     pub fn direction(&self, place: [f64; 2]) -> DVec3 {
         toward(self.radiance.width() as f64, self.poles, place)
     }
 
-    /// Returns the radiance of light that comes from a direction.
+    /// The radiance of light that comes from a direction.
     #[inline]
     #[must_use]
     pub fn radiance(&self, from: DVec3) -> f64 {
@@ -186,7 +186,7 @@ impl LatLong {
     }
 }
 
-/// Returns the direction of a position on a raster with the given width and poles.
+/// The direction of a position on a raster with the given width and poles.
 fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3 {
     let longitude = TAU * (0.5 - column / width);
     let latitude = PI * (0.5 - (row - top) / (bottom - top));

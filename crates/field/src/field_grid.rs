@@ -18,7 +18,7 @@ pub struct FieldGrid {
 }
 
 impl FieldGrid {
-    /// Returns the smallest grid over the support of `window` that is fine enough for `slices`. Its
+    /// The smallest grid over the support of `window` that is fine enough for `slices`. Its
     /// Nyquist frequencies are at least the largest frequencies of `slices`.
     #[must_use]
     pub fn new(window: &Window, slices: &SliceGrid) -> Self {
@@ -31,7 +31,7 @@ impl FieldGrid {
         Self { cells, half_widths }
     }
 
-    /// Returns the number of bytes of one grid of f64, or of its transform. Saturates at
+    /// The number of bytes of one grid of f64, or of its transform. Saturates at
     /// `u64::MAX`, so a caller can check the size of a grid before allocating the grid.
     #[must_use]
     pub fn bytes(&self) -> u64 {
@@ -43,25 +43,25 @@ impl FieldGrid {
             .fold(8, u64::saturating_mul)
     }
 
-    /// Returns the width of a cell along `axis`.
+    /// The width of a cell along `axis`.
     #[must_use]
     pub fn cell_width(&self, axis: usize) -> f64 {
         2.0 * self.half_widths[axis] / self.cells[axis] as f64
     }
 
-    /// Returns the volume of a cell, metre² · slope².
+    /// The volume of a cell, metre² · slope².
     #[must_use]
     pub fn cell_volume(&self) -> f64 {
         (0..4).map(|axis| self.cell_width(axis)).product()
     }
 
-    /// Returns the centre of cell `i` along `axis`.
+    /// The centre of cell `i` along `axis`.
     #[must_use]
     pub fn center(&self, axis: usize, i: usize) -> f64 {
         (i as f64 - self.cells[axis] as f64 / 2.0) * self.cell_width(axis)
     }
 
-    /// Returns the coordinates t of a ray in units of cells: whole numbers at the centres of cells,
+    /// The coordinates t of a ray in units of cells: whole numbers at the centres of cells,
     /// 0 ≤ t < n inside the box.
     #[inline]
     #[must_use]
@@ -72,19 +72,19 @@ impl FieldGrid {
         })
     }
 
-    /// Returns the spacing 1/(2h) of the frequencies along `axis`, cycles per unit.
+    /// The spacing 1/(2h) of the frequencies along `axis`, cycles per unit.
     #[must_use]
     pub fn spacing(&self, axis: usize) -> f64 {
         0.5 / self.half_widths[axis]
     }
 
-    /// Returns the Nyquist frequency n/(4h) along `axis`.
+    /// The Nyquist frequency n/(4h) along `axis`.
     #[must_use]
     pub fn nyquist(&self, axis: usize) -> f64 {
         self.cells[axis] as f64 / 2.0 * self.spacing(axis)
     }
 
-    /// Returns the frequency at index `i` of the transform along `axis`, as a multiple of the
+    /// The frequency at index `i` of the transform along `axis`, as a multiple of the
     /// spacing. The multiples are 0, 1, … n/2 − 1, −n/2, … −1.
     #[inline]
     #[must_use]
@@ -98,7 +98,7 @@ impl FieldGrid {
         if 2 * i < n { i } else { i - n }
     }
 
-    /// Returns the 4D frequency (Ωx, Ωy, Ωu, Ωv) at `index` of the transform.
+    /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) at `index` of the transform.
     #[must_use]
     pub fn frequency(&self, index: [usize; 4]) -> [f64; 4] {
         std::array::from_fn(|axis| self.harmonic(axis, index[axis]) as f64 * self.spacing(axis))
@@ -120,7 +120,7 @@ pub enum Assignment {
 }
 
 impl Assignment {
-    /// Returns the order p of the B-spline. The spline extends over p cells along an axis, and its
+    /// The order p of the B-spline. The spline extends over p cells along an axis, and its
     /// transform is the sinc to the power of p.
     #[inline]
     #[must_use]
@@ -133,7 +133,7 @@ impl Assignment {
     }
 }
 
-/// Returns twice `spacings` rounded up to a whole number, at least 8.
+/// Twice `spacings` rounded up to a whole number, at least 8.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

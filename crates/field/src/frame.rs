@@ -28,7 +28,7 @@ impl TwoPlane {
         1.0 + self.u * self.u + self.v * self.v
     }
 
-    /// Returns the same ray in a parallel plane a distance `d` further along D: x' = x + d u, y' =
+    /// The same ray in a parallel plane a distance `d` further along D: x' = x + d u, y' =
     /// y + d v.
     #[inline]
     #[must_use]
@@ -67,7 +67,7 @@ impl Frame {
         d: DVec3::Z,
     };
 
-    /// Returns the frame at `origin` with D along `d`. X is along the part of `x` that is
+    /// The frame at `origin` with D along `d`. X is along the part of `x` that is
     /// perpendicular to `d`.
     ///
     /// Returns `None` if `d` or `x` has zero length, or if they are parallel to within a
@@ -91,7 +91,7 @@ impl Frame {
         })
     }
 
-    /// Returns the parallel frame a distance `distance` further along D.
+    /// The parallel frame a distance `distance` further along D.
     #[must_use]
     pub fn travelled(&self, distance: f64) -> Self {
         Self {
@@ -123,7 +123,7 @@ impl Frame {
         }
     }
 
-    /// Returns the frame turned by the smallest angle that brings D along the unit vector `d`.
+    /// The frame turned by the smallest angle that brings D along the unit vector `d`.
     #[must_use]
     pub fn turned_to(&self, d: DVec3) -> Self {
         let turn = DQuat::from_rotation_arc(self.d, d);
@@ -138,7 +138,7 @@ impl Frame {
         }
     }
 
-    /// Returns the longitude of a direction: its angle from D towards X, radians.
+    /// The longitude of a direction: its angle from D towards X, radians.
     #[must_use]
     pub fn longitude(&self, direction: DVec3) -> f64 {
         libm::atan2(direction.dot(self.x), direction.dot(self.d))
@@ -151,7 +151,7 @@ impl Frame {
         self.vector_to_local(point - self.origin)
     }
 
-    /// Returns the world point at `local` coordinates (X, Y, D) of this frame.
+    /// The world point at `local` coordinates (X, Y, D) of this frame.
     #[inline]
     #[must_use]
     pub fn to_world(&self, local: DVec3) -> DVec3 {
@@ -165,7 +165,7 @@ impl Frame {
         DVec3::new(vector.dot(self.x), vector.dot(self.y), vector.dot(self.d))
     }
 
-    /// Returns the world vector with components `local` along X, Y and D.
+    /// The world vector with components `local` along X, Y and D.
     #[inline]
     #[must_use]
     pub fn vector_to_world(&self, local: DVec3) -> DVec3 {
@@ -173,7 +173,7 @@ impl Frame {
     }
 }
 
-/// Returns the lowest and the highest corner of the bounding box of points. If there are no points,
+/// The lowest and the highest corner of the bounding box of points. If there are no points,
 /// both corners are the origin.
 #[must_use]
 pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
@@ -182,7 +182,7 @@ pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
     [low, high].map(Option::unwrap_or_default)
 }
 
-/// Returns the corners of the box between two points.
+/// The corners of the box between two points.
 #[must_use]
 pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|i| {

@@ -12,26 +12,26 @@ pub struct FrequencyAxis {
 }
 
 impl FrequencyAxis {
-    /// Returns the number of frequencies, which is odd.
+    /// The number of frequencies, which is odd.
     #[must_use]
     pub fn count(&self) -> usize {
         2 * self.half + 1
     }
 
-    /// Returns the largest frequency.
+    /// The largest frequency.
     #[must_use]
     pub fn max(&self) -> f64 {
         self.half as f64 * self.spacing
     }
 
-    /// Returns the frequency at `index`, 0 ≤ index < count. Frequencies ascend, and the frequency
+    /// The frequency at `index`, 0 ≤ index < count. Frequencies ascend, and the frequency
     /// at `half` is zero.
     #[must_use]
     pub fn value(&self, index: usize) -> f64 {
         (index as f64 - self.half as f64) * self.spacing
     }
 
-    /// Returns all frequencies, ascending.
+    /// All frequencies, ascending.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
         (0..self.count()).map(|i| self.value(i)).collect()
@@ -51,26 +51,26 @@ pub struct SliceGrid {
 }
 
 impl SliceGrid {
-    /// Returns the azimuth φ_k, in radians.
+    /// The azimuth φ_k, in radians.
     #[must_use]
     pub fn azimuth(&self, k: usize) -> f64 {
         std::f64::consts::PI * k as f64 / self.azimuths as f64
     }
 
-    /// Returns the 4D frequency (Ωx, Ωy, Ωu, Ωv) of slice `k` at (ρ, ν).
+    /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) of slice `k` at (ρ, ν).
     #[must_use]
     pub fn frequency(&self, k: usize, rho: f64, nu: f64) -> [f64; 4] {
         let (s, c) = libm::sincos(self.azimuth(k));
         [rho * c, rho * s, nu * c, nu * s]
     }
 
-    /// Returns the shape [K, half of ρ: ρ ≥ 0, ν] in which [`Slices`](crate::Slices) are stored.
+    /// The shape [K, half of ρ: ρ ≥ 0, ν] in which [`Slices`](crate::Slices) are stored.
     #[must_use]
     pub fn half_shape(&self) -> [usize; 3] {
         [self.azimuths, self.rho.half + 1, self.nu.count()]
     }
 
-    /// Returns the shape [K, ρ, ν] of all frequencies.
+    /// The shape [K, ρ, ν] of all frequencies.
     #[must_use]
     pub fn full_shape(&self) -> [usize; 3] {
         [self.azimuths, self.rho.count(), self.nu.count()]

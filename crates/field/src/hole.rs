@@ -38,13 +38,13 @@ impl ConvexPolygon {
         is_convex.then_some(polygon)
     }
 
-    /// Returns the corners, counter-clockwise, in metres.
+    /// The corners, counter-clockwise, in metres.
     #[must_use]
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.corners
     }
 
-    /// Returns the corners in the order in which [`new`](Self::new) received them, in metres.
+    /// The corners in the order in which [`new`](Self::new) received them, in metres.
     #[must_use]
     pub fn in_given_order(&self) -> Vec<[f64; 2]> {
         let mut corners = self.corners.clone();
@@ -54,7 +54,7 @@ impl ConvexPolygon {
         corners
     }
 
-    /// Returns the two ends of each edge.
+    /// The two ends of each edge.
     pub fn edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(a, b)| [*a, *b])
@@ -74,7 +74,7 @@ impl ConvexPolygon {
     }
 }
 
-/// Returns twice the signed area of a triangle. The area is positive if the corners are
+/// Twice the signed area of a triangle. The area is positive if the corners are
 /// counter-clockwise.
 #[inline]
 fn turn([ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
@@ -112,14 +112,14 @@ impl Hole {
         }
     }
 
-    /// Returns the share of radiance that passes at (x, y): 1 in the hole and 0 elsewhere.
+    /// The share of radiance that passes at (x, y): 1 in the hole and 0 elsewhere.
     #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {
         f64::from(u8::from(self.contains(x, y)))
     }
 
-    /// Returns the smallest rectangle that contains the hole.
+    /// The smallest rectangle that contains the hole.
     #[must_use]
     pub fn bounds(&self) -> Rectangle {
         let polygon = match self {
@@ -138,7 +138,7 @@ impl Hole {
         }
     }
 
-    /// Returns the interval along an axis (0 for x, 1 for y) in which a line along this axis
+    /// The interval along an axis (0 for x, 1 for y) in which a line along this axis
     /// crosses the hole, in metres. `at` is the other coordinate of the line. Returns `None` if the
     /// line misses the hole.
     #[must_use]
@@ -166,7 +166,7 @@ impl Hole {
         }
     }
 
-    /// Returns the distance from the point (x, y) to the opaque part of the screen, in metres. The
+    /// The distance from the point (x, y) to the opaque part of the screen, in metres. The
     /// distance is zero if the point is not in the hole.
     #[must_use]
     pub fn clearance(&self, x: f64, y: f64) -> f64 {
@@ -188,7 +188,7 @@ impl Hole {
         nearest.max(0.0)
     }
 
-    /// Returns the hole after a scaling of its plane by a factor, which may be negative, and a
+    /// The hole after a scaling of its plane by a factor, which may be negative, and a
     /// shift in metres.
     #[must_use]
     pub fn mapped(&self, factor: f64, shift: [f64; 2]) -> Self {
@@ -212,7 +212,7 @@ impl Hole {
         }
     }
 
-    /// Returns the area, the centroid and the second moments.
+    /// The area, the centroid and the second moments.
     #[must_use]
     pub fn moments(&self) -> HoleMoments {
         match self {
@@ -237,7 +237,7 @@ impl Hole {
     }
 }
 
-/// Returns the moments of a polygon: sums over the triangles between its first corner and its
+/// The moments of a polygon: sums over the triangles between its first corner and its
 /// edges. The area is negative if the corners are clockwise.
 fn moments(corners: &[[f64; 2]]) -> HoleMoments {
     let origin = corners.first().copied().unwrap_or_default();

@@ -17,7 +17,7 @@ pub struct Image {
 const REACH: f64 = 3.6;
 
 impl Image {
-    /// Returns the picture at (a, b). The picture is 0 where |a| or |b| exceeds its reach.
+    /// The picture at (a, b). The picture is 0 where |a| or |b| exceeds its reach.
     #[inline]
     #[must_use]
     pub fn value(&self, a: f64, b: f64) -> f64 {
@@ -30,13 +30,13 @@ impl Image {
         envelope * grating
     }
 
-    /// Returns the largest |a| and |b| at which the picture is not dark: 3.6 widths.
+    /// The largest |a| and |b| at which the picture is not dark: 3.6 widths.
     #[must_use]
     pub fn reach(&self) -> [f64; 2] {
         self.width.map(|width| REACH * width)
     }
 
-    /// Returns the integral of the envelope, w₁ w₂.
+    /// The integral of the envelope, w₁ w₂.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.width[0] * self.width[1]

@@ -55,7 +55,7 @@ fn shared<S: Serializer>(rays: &Arc<RayLight>, serializer: S) -> Result<S::Ok, S
 }
 
 impl Light {
-    /// Returns the picture through which the light shines, if any.
+    /// The picture through which the light shines, if any.
     #[must_use]
     pub fn image(&self) -> Option<&Image> {
         match self {
@@ -64,7 +64,7 @@ impl Light {
         }
     }
 
-    /// Returns the flat shape of the light, if any.
+    /// The flat shape of the light, if any.
     #[must_use]
     pub fn shape(&self) -> Option<&Shape> {
         match self {
@@ -92,7 +92,7 @@ impl Light {
         matches!(self, Self::Beam { .. } | Self::Environment { .. })
     }
 
-    /// Returns the lowest and highest coordinate along x or y (0 or 1) of the light's points in
+    /// The lowest and highest coordinate along x or y (0 or 1) of the light's points in
     /// its plane, metres. The coordinates are infinite for an environment.
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
@@ -106,7 +106,7 @@ impl Light {
         [-half, half]
     }
 
-    /// Returns the largest slope of the light along x or y (0 or 1). The result is infinite if the
+    /// The largest slope of the light along x or y (0 or 1). The result is infinite if the
     /// slopes are unbounded.
     #[must_use]
     pub fn steepest(&self, axis: usize) -> f64 {

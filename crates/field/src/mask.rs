@@ -20,7 +20,7 @@ pub enum Mask {
 }
 
 impl Mask {
-    /// Returns the grating, if the mask is one.
+    /// The grating, if the mask is one.
     #[must_use]
     pub fn grating(&self) -> Option<&Grating> {
         match self {
@@ -29,7 +29,7 @@ impl Mask {
         }
     }
 
-    /// Returns the share of radiance that passes at (x, y).
+    /// The share of radiance that passes at (x, y).
     #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Formatting of numbers for readers, and conversion to whole numbers.
 
-/// Returns the shortest text that is accurate to twelve significant digits, which omits the digits
+/// The shortest text that is accurate to twelve significant digits, which omits the digits
 /// that contain rounding errors.
 #[must_use]
 pub fn tidy(x: f64) -> String {
@@ -9,7 +9,7 @@ pub fn tidy(x: f64) -> String {
     (rounded + 0.0).to_string()
 }
 
-/// Returns a text with at most seven significant digits. If many zeros would hide the digits, the
+/// A text with at most seven significant digits. If many zeros would hide the digits, the
 /// text has a power of ten.
 #[must_use]
 pub fn brief(x: f64) -> String {
@@ -43,7 +43,7 @@ pub fn fixed(value: f64, places: usize) -> String {
     if is_zero { text.replace('-', "") } else { text }
 }
 
-/// Returns the number of decimals that shows two digits of a number above 0.
+/// The number of decimals that shows two digits of a number above 0.
 #[must_use]
 pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
@@ -71,7 +71,7 @@ pub fn uncertain(value: f64, error: f64) -> String {
     format!("{value:.digits$e} ± {error:.1e}")
 }
 
-/// Returns the whole part of a number. The result is 0 for negative numbers and NaN, and saturates
+/// The whole part of a number. The result is 0 for negative numbers and NaN, and saturates
 /// at the largest value of the type.
 #[inline]
 #[must_use]

@@ -24,7 +24,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Returns the patch in the coordinates of `frame`. `frame` is given in the same coordinates as
+    /// The patch in the coordinates of `frame`. `frame` is given in the same coordinates as
     /// the patch's frame.
     #[must_use]
     pub fn seen_from(&self, frame: &Frame) -> Self {
@@ -34,7 +34,7 @@ impl Patch {
         }
     }
 
-    /// Returns the point of the patch over (s, t), in the coordinates in which the patch's frame is
+    /// The point of the patch over (s, t), in the coordinates in which the patch's frame is
     /// given. The result is NaN if (s, t) lies beyond the half of the quadric that contains the
     /// vertex.
     #[must_use]
@@ -45,7 +45,7 @@ impl Patch {
         self.frame.to_world(DVec3::new(s, t, h))
     }
 
-    /// Returns the corners of a bounding box, in the coordinates in which the patch's frame is
+    /// The corners of a bounding box, in the coordinates in which the patch's frame is
     /// given.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
@@ -60,7 +60,7 @@ impl Patch {
         box_corners(-half, half).map(|p| self.frame.to_world(p))
     }
 
-    /// Returns the unit normal at a point near the patch, on the side of D at the vertex. Point
+    /// The unit normal at a point near the patch, on the side of D at the vertex. Point
     /// and normal are in the coordinates in which the patch's frame is given.
     #[inline]
     #[must_use]
@@ -79,7 +79,7 @@ impl Patch {
         a * x * x + b * y * y + c * z * z + 2.0 * z
     }
 
-    /// Returns half of the gradient of [`value`](Self::value), in the patch's frame. The gradient
+    /// Half of the gradient of [`value`](Self::value), in the patch's frame. The gradient
     /// is along the normal, on the side of D. The last component is positive on the half of the
     /// quadric that contains the vertex.
     #[inline]
@@ -89,7 +89,7 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
-    /// Returns the parameters t, ascending, at which the points start + t · direction lie on the
+    /// The parameters t, ascending, at which the points start + t · direction lie on the
     /// patch. `start` and `direction` are in the patch's frame. A parameter without such a point is
     /// NaN.
     #[inline]
@@ -122,7 +122,7 @@ impl Patch {
 }
 
 impl Specular {
-    /// Returns the direction of a ray after it meets a surface at `point`. `normal` is the unit
+    /// The direction of a ray after it meets a surface at `point`. `normal` is the unit
     /// normal at this point, on the side that the surface faces. All vectors are in one frame, and
     /// the direction may have any length. `lens` is the frame of a lens. Returns `None` if a
     /// surface that refracts reflects the ray totally.

@@ -38,7 +38,7 @@ fn shared<S: Serializer>(pixels: &Arc<Raster>, serializer: S) -> Result<S::Ok, S
 }
 
 impl Picture {
-    /// Returns the value at (s, t).
+    /// The value at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {
@@ -52,7 +52,7 @@ impl Picture {
 }
 
 impl Pattern {
-    /// Returns the value at (s, t).
+    /// The value at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {

@@ -89,7 +89,7 @@ pub struct VirtualPlane {
 }
 
 impl VirtualPlane {
-    /// Returns the factor that converts the radiance of a ray to the plane's quantity.
+    /// The factor that converts the radiance of a ray to the plane's quantity.
     #[inline]
     #[must_use]
     pub fn factor(&self, ray: &TwoPlane) -> f64 {

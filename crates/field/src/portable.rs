@@ -67,13 +67,13 @@ pub fn power(x: f64, y: f64) -> f64 {
     }
 }
 
-/// Returns |z|. No intermediate result overflows or underflows.
+/// |z|. No intermediate result overflows or underflows.
 #[must_use]
 pub fn modulus(z: Complex) -> f64 {
     libm::hypot(z.re, z.im)
 }
 
-/// Returns the square root with Re √z ≥ 0. If z is negative, which is the branch cut, the imaginary
+/// The square root with Re √z ≥ 0. If z is negative, which is the branch cut, the imaginary
 /// part of the root has the sign of Im z.
 #[must_use]
 pub fn square_root(z: Complex) -> Complex {

@@ -14,7 +14,7 @@ pub struct ProjectionGrid {
 }
 
 impl ProjectionGrid {
-    /// Returns the grid over the support of `window`.
+    /// The grid over the support of `window`.
     #[must_use]
     pub fn new(window: &Window, bins: usize) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl ProjectionGrid {
         }
     }
 
-    /// Returns the cell [x, u] that contains (x, u); `None` outside the window.
+    /// The cell [x, u] that contains (x, u); `None` outside the window.
     #[inline]
     #[must_use]
     #[expect(
@@ -39,13 +39,13 @@ impl ProjectionGrid {
         ((0.0..n).contains(&i) && (0.0..n).contains(&j)).then_some([i as usize, j as usize])
     }
 
-    /// Returns the centre of cell `i` along an axis of half-width `half`.
+    /// The centre of cell `i` along an axis of half-width `half`.
     #[must_use]
     pub fn center(&self, i: usize, half: f64) -> f64 {
         ((i as f64 + 0.5) / self.bins as f64 * 2.0 - 1.0) * half
     }
 
-    /// Returns the area of a cell, metre · slope.
+    /// The area of a cell, metre · slope.
     #[must_use]
     pub fn cell_area(&self) -> f64 {
         4.0 * self.half_x * self.half_u / (self.bins * self.bins) as f64

@@ -12,7 +12,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Returns the raster, or `None` if there is no pixel or if the number of values differs from
+    /// The raster, or `None` if there is no pixel or if the number of values differs from
     /// the number of pixels.
     #[must_use]
     pub fn new(width: usize, height: usize, values: Vec<f64>) -> Option<Self> {
@@ -24,25 +24,25 @@ impl Raster {
         })
     }
 
-    /// Returns the number of pixels in a row.
+    /// The number of pixels in a row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Returns the number of rows.
+    /// The number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Returns the values of all pixels.
+    /// The values of all pixels.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Returns the four pixels whose centres surround a position. Also returns the weights of these
+    /// The four pixels whose centres surround a position. Also returns the weights of these
     /// pixels in bilinear interpolation.
     ///
     /// Positions are in pixels from the left and from the top edge: the centre of the first pixel
@@ -61,7 +61,7 @@ impl Raster {
         ]
     }
 
-    /// Returns the bilinear interpolation at a position, see [`Self::around`].
+    /// The bilinear interpolation at a position, see [`Self::around`].
     #[inline]
     #[must_use]
     pub fn value(&self, column: f64, row: f64, wraps: bool) -> f64 {
@@ -72,7 +72,7 @@ impl Raster {
     }
 }
 
-/// Returns the two pixels, in a row of `count` pixels, whose centres surround a position. Also
+/// The two pixels, in a row of `count` pixels, whose centres surround a position. Also
 /// returns the weight of the second pixel.
 #[expect(
     clippy::cast_possible_truncation,

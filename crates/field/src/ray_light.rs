@@ -63,25 +63,25 @@ impl RayLight {
         })
     }
 
-    /// Returns all rays, in the order of the file.
+    /// All rays, in the order of the file.
     #[must_use]
     pub fn rays(&self) -> &[FluxRay] {
         &self.rays
     }
 
-    /// Returns the flux of all rays, W.
+    /// The flux of all rays, W.
     #[must_use]
     pub fn flux(&self) -> f64 {
         self.upto.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the flux of the omitted rays, which do not go forward, W.
+    /// The flux of the omitted rays, which do not go forward, W.
     #[must_use]
     pub fn behind(&self) -> f64 {
         self.behind
     }
 
-    /// Returns the ray at a share of the cumulative flux, from 0 to 1. If the share is random, each
+    /// The ray at a share of the cumulative flux, from 0 to 1. If the share is random, each
     /// ray is sampled in proportion to its flux.
     #[must_use]
     pub fn at_share(&self, share: f64) -> &FluxRay {

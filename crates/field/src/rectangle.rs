@@ -13,7 +13,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Returns the lowest and highest coordinate along X (`axis` 0) or Y (`axis` 1).
+    /// The lowest and highest coordinate along X (`axis` 0) or Y (`axis` 1).
     #[inline]
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
@@ -31,7 +31,7 @@ impl Rectangle {
         along_x & along_y
     }
 
-    /// Returns the largest absolute coordinate of a point of the rectangle.
+    /// The largest absolute coordinate of a point of the rectangle.
     #[must_use]
     pub fn reach(&self) -> f64 {
         let ends = [self.extent(0), self.extent(1)];
@@ -40,7 +40,7 @@ impl Rectangle {
             .fold(0.0, |m: f64, v| m.max(v.abs()))
     }
 
-    /// Returns the area, in square metres.
+    /// The area, in square metres.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.size[0] * self.size[1]

@@ -40,7 +40,7 @@ pub enum Weight {
 }
 
 impl Weight {
-    /// Returns the weight at (s, t).
+    /// The weight at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {
@@ -51,7 +51,7 @@ impl Weight {
         }
     }
 
-    /// Returns the pattern of the weight, if any.
+    /// The pattern of the weight, if any.
     #[must_use]
     pub fn pattern(&self) -> Option<&Pattern> {
         match self {
@@ -69,14 +69,14 @@ pub struct Mixture<'a> {
 }
 
 impl<'a> Mixture<'a> {
-    /// Returns the BRDFs at the point, with their weights.
+    /// The BRDFs at the point, with their weights.
     #[inline]
     pub fn weighted(&self) -> impl Iterator<Item = (f64, &'a Brdf)> + use<'a> {
         let pairs = self.weights.into_iter().zip(self.terms);
         pairs.filter_map(|(weight, term)| (weight > 0.0).then_some((weight, &term.brdf)))
     }
 
-    /// Returns the sum of albedos.
+    /// The sum of albedos.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> f64 {
@@ -119,19 +119,19 @@ impl Reflectance {
         }
     }
 
-    /// Returns the first BRDF of the sum, which determines whether light leaves around the mirror
+    /// The first BRDF of the sum, which determines whether light leaves around the mirror
     /// direction.
     #[must_use]
     pub fn first(&self) -> &Brdf {
         &self.terms[0].brdf
     }
 
-    /// Returns the first BRDF of the sum as a mutable reference.
+    /// The first BRDF of the sum as a mutable reference.
     pub fn first_mut(&mut self) -> &mut Brdf {
         &mut self.terms[0].brdf
     }
 
-    /// Returns the BRDF if the reflectance is not a sum.
+    /// The BRDF if the reflectance is not a sum.
     #[must_use]
     pub fn only(&self) -> Option<&Brdf> {
         match &self.terms[..] {
@@ -140,7 +140,7 @@ impl Reflectance {
         }
     }
 
-    /// Returns the BRDFs at (s, t), with their weights multiplied by the texture.
+    /// The BRDFs at (s, t), with their weights multiplied by the texture.
     #[inline]
     #[must_use]
     pub fn at(&self, s: f64, t: f64) -> Mixture<'_> {

@@ -43,7 +43,7 @@ impl Shape {
         }
     }
 
-    /// Returns the smallest rectangle that contains the shape.
+    /// The smallest rectangle that contains the shape.
     #[must_use]
     pub fn bounds(&self) -> Rectangle {
         match *self {
@@ -55,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// Returns the area, in square metres.
+    /// The area, in square metres.
     #[must_use]
     pub fn area(&self) -> f64 {
         match self {
@@ -65,7 +65,7 @@ impl Shape {
     }
 }
 
-/// Returns the distance along the central ray at which a ray meets a triangle. The triangle is
+/// The distance along the central ray at which a ray meets a triangle. The triangle is
 /// given in the frame of the ray's coordinates.
 ///
 /// The corners are projected along the ray, and the ray meets the triangle if the projected
@@ -93,7 +93,7 @@ pub fn triangle_is_met(corners: &[DVec3; 3], ray: &TwoPlane) -> bool {
     triangle_weights(corners, ray).2
 }
 
-/// Returns the areas that a ray and the edges of a triangle span as seen along the ray, the sum of
+/// The areas that a ray and the edges of a triangle span as seen along the ray, the sum of
 /// these areas, and whether the ray meets the triangle.
 #[inline]
 fn triangle_weights(corners: &[DVec3; 3], ray: &TwoPlane) -> ([f64; 3], f64, bool) {
@@ -106,7 +106,7 @@ fn triangle_weights(corners: &[DVec3; 3], ray: &TwoPlane) -> ([f64; 3], f64, boo
     ([p, q, r], sum, inside & (sum != 0.0))
 }
 
-/// Returns the unit normal at a point of a triangle, interpolated between the normals at its
+/// The unit normal at a point of a triangle, interpolated between the normals at its
 /// corners.
 #[must_use]
 pub fn interpolated_normal(corners: &[DVec3; 3], normals: &[DVec3; 3], point: DVec3) -> DVec3 {
@@ -170,7 +170,7 @@ pub struct Grating {
 }
 
 impl Grating {
-    /// Returns the share of radiance that passes at (x, y).
+    /// The share of radiance that passes at (x, y).
     #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {

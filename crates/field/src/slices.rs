@@ -18,7 +18,7 @@ pub struct Slices {
 }
 
 impl Slices {
-    /// Returns slices with all values zero.
+    /// Slices with all values zero.
     #[must_use]
     pub fn zeros(grid: SliceGrid) -> Self {
         Self {
@@ -33,26 +33,26 @@ impl Slices {
         self.half.iter().all(|s| s.norm_sqr() <= 0.0)
     }
 
-    /// Returns ‖ℓ̂‖, the root of the sum of |ℓ̂|² over the stored half.
+    /// ‖ℓ̂‖, the root of the sum of |ℓ̂|² over the stored half.
     #[must_use]
     pub fn norm(&self) -> f64 {
         let squares = self.half.iter().map(|s| s.norm_sqr());
         squares.sum::<f64>().sqrt()
     }
 
-    /// Returns the value ℓ̂(0) = ∫ L W.
+    /// The value ℓ̂(0) = ∫ L W.
     #[must_use]
     pub fn at_zero(&self) -> f64 {
         self.half[[0, 0, self.grid.nu.half]].re
     }
 
-    /// Returns all frequencies, [azimuth, ρ, ν], ρ and ν ascending.
+    /// All frequencies, [azimuth, ρ, ν], ρ and ν ascending.
     #[must_use]
     pub fn full(&self) -> Array3<Complex> {
         unfold(&self.grid, self.half.view(), |s| s.conj())
     }
 
-    /// Returns |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
+    /// |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
     #[must_use]
     pub fn radial_power(&self) -> Array2<f64> {
         let mut power = Array2::zeros((self.grid.rho.count(), self.grid.nu.count()));
@@ -62,13 +62,13 @@ impl Slices {
         power / self.grid.azimuths as f64
     }
 
-    /// Returns ‖self − reference‖/‖reference‖ over the values at ρ ≥ 0; 0 if the two are equal.
+    /// ‖self − reference‖/‖reference‖ over the values at ρ ≥ 0; 0 if the two are equal.
     #[must_use]
     pub fn relative_difference(&self, reference: &Self) -> f64 {
         self.relative_difference_where(reference, |_, _| true)
     }
 
-    /// Returns the relative difference over the independent frequencies. On the line ρ = 0, the
+    /// The relative difference over the independent frequencies. On the line ρ = 0, the
     /// values at −ν repeat the values at ν, so only half of the line counts.
     #[must_use]
     pub fn independent_relative_difference(&self, reference: &Self) -> f64 {

@@ -68,7 +68,7 @@ fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
 }
 
 impl Profile {
-    /// Returns the half-width of the support.
+    /// The half-width of the support.
     #[inline]
     #[must_use]
     pub fn half_width(&self) -> f64 {
@@ -78,7 +78,7 @@ impl Profile {
         }
     }
 
-    /// Returns the profile at `t`.
+    /// The profile at `t`.
     #[inline]
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
@@ -95,7 +95,7 @@ impl Profile {
         }
     }
 
-    /// Returns the profile at several numbers inside the support.
+    /// The profile at several numbers inside the support.
     #[inline(always)]
     fn values<const N: usize>(&self, t: &[f64; N]) -> [f64; N] {
         match *self {
@@ -109,7 +109,7 @@ impl Profile {
         }
     }
 
-    /// Returns the same shape, `factor` times as wide.
+    /// The same shape, `factor` times as wide.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         match *self {
@@ -122,7 +122,7 @@ impl Profile {
         }
     }
 
-    /// Returns the Fourier transform ∫ W(t) e^(−2πi f t) dt at a frequency. The transform is real.
+    /// The Fourier transform ∫ W(t) e^(−2πi f t) dt at a frequency. The transform is real.
     #[must_use]
     pub fn transform(&self, frequency: f64) -> f64 {
         let width = 2.0 * self.half_width();
@@ -133,7 +133,7 @@ impl Profile {
         width * self.cosine_terms().iter().map(of_term).sum::<f64>()
     }
 
-    /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
+    /// The profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
     /// The sum is exact for Hann and Box. A Gaussian is approximated by a Fourier series of period
     /// 2L, which equals the sum of copies of the Gaussian at distances of 2L. L is chosen such that
@@ -193,7 +193,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Returns the window at a ray; zero outside the support.
+    /// The window at a ray; zero outside the support.
     #[inline]
     #[must_use]
     pub fn value(&self, z: &TwoPlane) -> f64 {
@@ -212,7 +212,7 @@ impl Window {
         x * y * u * v
     }
 
-    /// Returns the window at several rays inside the support, given as columns of x, y, u and v.
+    /// The window at several rays inside the support, given as columns of x, y, u and v.
     /// The values are those of [`Self::value`].
     #[inline(always)]
     #[must_use]

@@ -13,7 +13,7 @@ pub struct AxisQuantity {
 }
 
 impl AxisQuantity {
-    /// Returns the quantity called `name` with the unit `unit`.
+    /// The quantity called `name` with the unit `unit`.
     #[must_use]
     pub fn new(name: &str, unit: &str) -> Self {
         Self {
@@ -22,7 +22,7 @@ impl AxisQuantity {
         }
     }
 
-    /// Returns the label "name (unit)" as markup. The unit includes the factor 10 to the power
+    /// The label "name (unit)" as markup. The unit includes the factor 10 to the power
     /// `exponent`.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
@@ -41,7 +41,7 @@ impl AxisQuantity {
         }
     }
 
-    /// Returns the table heading "name [unit]" without markup.
+    /// The table heading "name [unit]" without markup.
     pub(crate) fn heading(&self) -> String {
         let name = crate::text::plain(&self.name);
         match crate::text::plain(&self.unit).as_str() {
@@ -76,7 +76,7 @@ pub(crate) struct Tick {
 }
 
 impl Axis {
-    /// Returns an axis whose cells fill the range from `min` to `max`.
+    /// An axis whose cells fill the range from `min` to `max`.
     #[must_use]
     pub fn edges(name: &str, unit: &str, [min, max]: [f64; 2]) -> Self {
         Self {
@@ -88,12 +88,12 @@ impl Axis {
         }
     }
 
-    /// Returns the axis of a quantity over a range.
+    /// The axis of a quantity over a range.
     pub(crate) fn of(quantity: &AxisQuantity, [min, max]: [f64; 2]) -> Self {
         Self::edges(&quantity.name, &quantity.unit, [min, max])
     }
 
-    /// Returns this axis with its numbers decreasing.
+    /// This axis with its numbers decreasing.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
@@ -102,7 +102,7 @@ impl Axis {
         }
     }
 
-    /// Returns an axis of `count` samples from `first` to `last`; each sample fills a cell
+    /// An axis of `count` samples from `first` to `last`; each sample fills a cell
     /// centred on it.
     #[must_use]
     pub fn centers(name: &str, unit: &str, [first, last]: [f64; 2], count: usize) -> Self {
@@ -110,7 +110,7 @@ impl Axis {
         Self::edges(name, unit, [first - half, last + half])
     }
 
-    /// Returns the centre of the cell `index` of `count` cells.
+    /// The centre of the cell `index` of `count` cells.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
         // The formula is symmetric in the two edges, so the middle of a symmetric axis is exactly
         // 0.
@@ -123,7 +123,7 @@ impl Axis {
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
-    /// Returns the edges of the axis. If the edges coincide or are reversed, they are moved apart.
+    /// The edges of the axis. If the edges coincide or are reversed, they are moved apart.
     pub(crate) fn range(&self) -> [f64; 2] {
         if self.max > self.min && (self.max - self.min).is_finite() {
             [self.min, self.max]
@@ -134,7 +134,7 @@ impl Axis {
         }
     }
 
-    /// Returns the position of `value` along the axis: 0 at the outer edge of the first cell, and
+    /// The position of `value` along the axis: 0 at the outer edge of the first cell, and
     /// 1 at the outer edge of the last cell.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
@@ -146,7 +146,7 @@ impl Axis {
         if self.is_reversed { 1.0 - above } else { above }
     }
 
-    /// Returns the power of ten that is factored out of the tick texts.
+    /// The power of ten that is factored out of the tick texts.
     pub(crate) fn exponent(&self) -> i32 {
         let [min, max] = self.range();
         if self.is_log {
@@ -174,7 +174,7 @@ impl Axis {
         self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
     }
 
-    /// Returns the ticks of a logarithmic axis, at `digits` × 10ⁿ.
+    /// The ticks of a logarithmic axis, at `digits` × 10ⁿ.
     fn powers(&self, digits: &[f64]) -> Vec<Tick> {
         let [min, max] = self.range();
         let tick = |n: i32, digit: f64| {
@@ -278,7 +278,7 @@ fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     })
 }
 
-/// Returns the ticks of a vertical axis: one per 36 units of its height, or more if fewer than
+/// The ticks of a vertical axis: one per 36 units of its height, or more if fewer than
 /// three ticks would fit.
 pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     let most = (height / 36.0).max(2.0);
@@ -287,7 +287,7 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     enough.next().unwrap_or_else(|| axis.ticks(most))
 }
 
-/// Returns the smallest number of the form `digits` × 10ⁿ that is at least `least`, which is
+/// The smallest number of the form `digits` × 10ⁿ that is at least `least`, which is
 /// above 0.
 fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
@@ -298,7 +298,7 @@ fn step(least: f64, digits: &[f64]) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// Returns the exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors, or 0 if the value is
+/// The exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors, or 0 if the value is
 /// zero.
 #[expect(
     clippy::cast_possible_truncation,
@@ -312,7 +312,7 @@ fn order(value: f64) -> i32 {
     }
 }
 
-/// Returns the text with the minus sign − in place of hyphens.
+/// The text with the minus sign − in place of hyphens.
 pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }

@@ -91,7 +91,7 @@ fn names(svg: &mut Svg, names: &[String], frame: &Panel<'_>) {
     }
 }
 
-/// Returns the CSV, with a row for each value of each name.
+/// The CSV, with a row for each value of each name.
 fn numbers(chart: &Chart) -> Result<String, Error> {
     let header = ["name", "curve", &chart.y.heading(), "error"].map(str::to_owned);
     let row = |curve: &Curve, [x, y, error]: &[f64; 3]| {

@@ -27,7 +27,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Returns the colors of a quantity whose largest value is `peak`. Scales in decibels have
+    /// The colors of a quantity whose largest value is `peak`. Scales in decibels have
     /// their own label, `decibels`.
     pub(crate) fn shading(
         self,
@@ -116,7 +116,7 @@ impl Colors {
     }
 }
 
-/// Returns the 256 colors of magnitudes, from dark to pale, and the 256 colors of differences,
+/// The 256 colors of magnitudes, from dark to pale, and the 256 colors of differences,
 /// from blue to red. Each color is given as red, green and blue.
 #[must_use]
 pub fn palettes() -> [Vec<u8>; 2] {
@@ -126,7 +126,7 @@ pub fn palettes() -> [Vec<u8>; 2] {
     })
 }
 
-/// Returns the color at fraction `t` of the color circle.
+/// The color at fraction `t` of the color circle.
 fn on_circle(t: f64) -> Rgb {
     let place = t * CIRCLE.len() as f64;
     let before = whole(place);
@@ -153,7 +153,7 @@ pub(crate) struct Shading {
 }
 
 impl Shading {
-    /// Returns a shading with linear colors on an axis.
+    /// A shading with linear colors on an axis.
     pub(crate) fn linear(colors: Colors, axis: Axis) -> Self {
         Self {
             colors,
@@ -163,7 +163,7 @@ impl Shading {
         }
     }
 
-    /// Returns a shading for angles in degrees, once around the circle.
+    /// A shading for angles in degrees, once around the circle.
     pub(crate) fn phase(name: &str) -> Self {
         Self::linear(
             Colors::Cyclic,
@@ -171,7 +171,7 @@ impl Shading {
         )
     }
 
-    /// Returns a shading in decibels below `peak`, on an axis from `floor` to 0.
+    /// A shading in decibels below `peak`, on an axis from `floor` to 0.
     pub(crate) fn decibel(colors: Colors, name: &str, floor: f64, peak: f64) -> Self {
         let floor = if floor < 0.0 { floor } else { -60.0 };
         Self {
@@ -182,7 +182,7 @@ impl Shading {
         }
     }
 
-    /// Returns the same shading. If any of `values` are beyond its range, its ends are marked.
+    /// The same shading. If any of `values` are beyond its range, its ends are marked.
     pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
         let [low, high] = self.axis.range();
         for value in values {
@@ -210,7 +210,7 @@ impl Shading {
     }
 }
 
-/// Returns the largest finite value, or 0 if no value is positive.
+/// The largest finite value, or 0 if no value is positive.
 pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
     let finite = values.iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f64::max)

@@ -107,12 +107,12 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
 }
 
 impl<'a> Comparison<'a> {
-    /// Returns the values of both sources that are drawn.
+    /// The values of both sources that are drawn.
     fn drawn(&self) -> [ArrayView2<'a, f64>; 2] {
         self.finer.unwrap_or([self.measured, self.predicted])
     }
 
-    /// Returns the name of the difference between the two sources, divided by its standard
+    /// The name of the difference between the two sources, divided by its standard
     /// deviation.
     fn difference(&self, sigma: &str) -> String {
         let [one, other] = self.sides;
@@ -124,7 +124,7 @@ fn area(index: usize, top: f64) -> Area {
     Area::new([PANELS_X[index], top], [PANEL, PANEL])
 }
 
-/// Returns the colors that the measured and the predicted values share.
+/// The colors that the measured and the predicted values share.
 fn value_shading(comparison: &Comparison<'_>) -> Shading {
     let Comparison {
         quantity, scale, ..
@@ -143,7 +143,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
     shading.showing(measured).showing(predicted)
 }
 
-/// Returns the table of a comparison, with a row for each cell and with x varying slowest.
+/// The table of a comparison, with a row for each cell and with x varying slowest.
 fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
     let Comparison { x, y, quantity, .. } = comparison;
     let of = |side: usize| format!("{} {}", comparison.sides[side], quantity.heading());

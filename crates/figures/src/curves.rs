@@ -26,7 +26,7 @@ pub enum CurveKind {
 }
 
 impl CurveKind {
-    /// Returns the stroke of a line, or `None` for points.
+    /// The stroke of a line, or `None` for points.
     fn stroke(self) -> Option<Stroke> {
         match self {
             Self::Theory => Some(THEORY),
@@ -36,7 +36,7 @@ impl CurveKind {
         }
     }
 
-    /// Returns the layer in which a curve is drawn: points over lines, and small over large points.
+    /// The layer in which a curve is drawn: points over lines, and small over large points.
     fn layer(self) -> usize {
         match self {
             Self::Theory | Self::Rival | Self::OtherTheory => 0,
@@ -85,7 +85,7 @@ pub struct CurvePanel {
 }
 
 impl CurvePanel {
-    /// Returns a panel whose axes are not logarithmic.
+    /// A panel whose axes are not logarithmic.
     #[must_use]
     pub fn new(title: &str, x: AxisQuantity, curves: Vec<Curve>) -> Self {
         Self {
@@ -144,7 +144,7 @@ const POINT: &str = INK;
 const OPEN: f64 = 5.0;
 const HOLE: f64 = 3.8;
 const PAPER: &str = "#ffffff";
-/// Half of the length of the stroke that stands for a line through one point.
+/// Half the length of the dash that stands for a curve of a single point.
 const DASH: f64 = 11.0;
 /// Length of the short line that the key shows for each curve.
 const SAMPLE: f64 = 30.0;
@@ -229,7 +229,7 @@ fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
     [0, 1].iter().all(|i| !panel.is_log[*i] || point[*i] > 0.0)
 }
 
-/// Returns the axes of a panel, which cover all its points and y = 0.
+/// The axes of a panel, which cover all its points and y = 0.
 fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
     let points = || {
         let all = panel.curves.iter().flat_map(|c| &c.points);
@@ -339,7 +339,7 @@ fn bar(svg: &mut Svg, [x, _]: [f64; 2], [low, high]: [f64; 2]) {
     }
 }
 
-/// Returns the CSV of the panels, with a row for each point.
+/// The CSV of the panels, with a row for each point.
 fn numbers(curves: &Curves) -> Result<String, Error> {
     let y = curves.y.heading();
     let header = ["panel", "axis", "curve", "x", &y, "standard error"].map(str::to_owned);

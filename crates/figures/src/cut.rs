@@ -24,7 +24,7 @@ const NAME_ROW: f64 = 17.0;
 /// Line spacing of a plane's heading.
 const HEADING_LINE: f64 = 16.0;
 
-/// Returns the name of a plane in one line, or in two lines if it is too long.
+/// The name of a plane in one line, or in two lines if it is too long.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
     // Bold letters are wider than the estimate for regular letters, so less width is assumed to
     // be available.
@@ -138,7 +138,7 @@ impl<'a> SectionLayout<'a> {
         svg.polyline(&points, stroke);
     }
 
-    /// Returns the height of the headings of some planes, given the width that is available for
+    /// The height of the headings of some planes, given the width that is available for
     /// each heading.
     pub(crate) fn heading_height(&self, rooms: impl Iterator<Item = (usize, f64)>) -> f64 {
         let more = rooms.filter_map(|(plane, room)| {
@@ -149,7 +149,7 @@ impl<'a> SectionLayout<'a> {
         Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
     }
 
-    /// Returns the distance of a plane as text on one or two lines. If an element is at the same
+    /// The distance of a plane as text on one or two lines. If an element is at the same
     /// distance as the plane, the text also states the side on which the plane is.
     fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
         // The distance is written with four significant digits, in the shortest form.
@@ -188,7 +188,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Returns whether a plane is before or after an element at the same distance.
+    /// Whether a plane is before or after an element at the same distance.
     fn beside(&self, mark: &PlaneMark) -> &'static str {
         let near = 1e-9 * self.section.length;
         let stands = |s: &Segment| {
@@ -210,7 +210,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Returns the position in the drawing of a point (z, x); infinite elements end at the
+    /// The position in the drawing of a point (z, x); infinite elements end at the
     /// border.
     fn point(&self, [z, x]: [f64; 2]) -> [f64; 2] {
         let [low, high] = self.x.range();
@@ -259,7 +259,7 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// Returns the part of a line that is between the height just above the plot and the height
+    /// The part of a line that is between the height just above the plot and the height
     /// just below the plot. A horizontal line is returned unchanged.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];

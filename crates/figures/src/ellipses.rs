@@ -39,13 +39,13 @@ pub struct Ellipses<'a> {
 }
 
 impl Ellipses<'_> {
-    /// Returns the ellipses that are not missing, each with its color and dashes.
+    /// The ellipses that are not missing, each with its color and dashes.
     fn drawn(&self) -> impl Iterator<Item = (&Ellipse, &'static str, &'static str)> {
         let all = self.ellipses.iter().zip(STROKES);
         all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
     }
 
-    /// Returns the strokes over the picture in drawing order: all halos, then solid lines, then
+    /// The strokes over the picture in drawing order: all halos, then solid lines, then
     /// dashes. In this order, ellipses that coincide are all visible.
     fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
         let halo = Stroke::solid(HALO, 3.4);
@@ -129,7 +129,7 @@ fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Returns two tables: the covariances, and the cells with x varying slowest.
+/// Two tables: the covariances, and the cells with x varying slowest.
 fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
     let [a, b] = of.picture.headings();
     let header = [

@@ -67,13 +67,13 @@ pub enum Error {
 }
 
 impl Figure {
-    /// Returns a drawing without pictures.
+    /// A drawing without pictures.
     pub(crate) fn new(svg: String, csv: String) -> Self {
         let pictures = Vec::new();
         Self { svg, csv, pictures }
     }
 
-    /// Returns the drawing as a PNG, with two pixels to an SVG unit and with text in DejaVu Sans.
+    /// The drawing as a PNG, with two pixels to an SVG unit and with text in DejaVu Sans.
     /// The PNG states its resolution, 192 pixels per inch.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ const PAGE: f32 = 504.0;
 const POINT: f32 = 0.75;
 
 impl Figure {
-    /// Returns the drawing as a PDF page at natural size, at most as wide as two columns of a
+    /// The drawing as a PDF page at natural size, at most as wide as two columns of a
     /// journal. Texts on the page are stored as text.
     ///
     /// # Errors
@@ -151,7 +151,7 @@ pub fn stacked(figures: &[Figure]) -> Figure {
     }
 }
 
-/// Returns SVG reading options that use only the built-in fonts.
+/// SVG reading options that use only the built-in fonts.
 pub(crate) fn options() -> usvg::Options<'static> {
     let mut fonts = usvg::fontdb::Database::new();
     for face in [
@@ -169,7 +169,7 @@ pub(crate) fn options() -> usvg::Options<'static> {
     }
 }
 
-/// Returns the CSV text of a header and of rows of the same length.
+/// The CSV text of a header and of rows of the same length.
 ///
 /// # Errors
 /// If a row has another length.
@@ -188,7 +188,7 @@ pub fn csv_text(
     String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
 }
 
-/// Returns a number as text, with as many digits as are needed to read the number back exactly.
+/// A number as text, with as many digits as are needed to read the number back exactly.
 pub(crate) fn decimal(value: &f64) -> String {
     format!("{value:?}")
 }

@@ -1,6 +1,6 @@
 //! Converts linear intensity to grey.
 
-/// Returns the grey level, 0 to 255, for an intensity given as a fraction of white.
+/// The grey level, 0 to 255, for an intensity given as a fraction of white.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -26,7 +26,7 @@ const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
 
-/// Returns the two strokes of a line over spectra. The upper stroke is visible on dark colors,
+/// The two strokes of a line over spectra. The upper stroke is visible on dark colors,
 /// and the lower stroke on pale colors.
 pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
@@ -46,7 +46,7 @@ struct PlacedColumn {
     left: f64,
 }
 
-/// Returns the width between the left edge of the first picture and the color bars.
+/// The width between the left edge of the first picture and the color bars.
 pub(crate) fn inner(style: &Style) -> f64 {
     style.page() - LEFT - RIGHT
 }
@@ -132,7 +132,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         columns.map(place).collect()
     }
 
-    /// Returns the height of a picture.
+    /// The height of a picture.
     fn height(&self) -> f64 {
         self.shape * self.side
     }
@@ -142,18 +142,18 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         row.pictures[column].y != row.pictures[column - 1].y
     }
 
-    /// Returns the gap before a column.
+    /// The gap before a column.
     fn gap(&self, column: usize) -> f64 {
         let differs = self.rows.iter().any(|row| Self::differs(row, column));
         if differs { GAPS[1] } else { self.near }
     }
 
-    /// Returns the number of blocks, which are stacked on the page.
+    /// The number of blocks, which are stacked on the page.
     pub(crate) fn blocks(&self) -> usize {
         self.blocks.len()
     }
 
-    /// Returns the columns of a block, each with its centre and the width available for a text
+    /// The columns of a block, each with its centre and the width available for a text
     /// below it.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let places = &self.blocks[block];
@@ -166,7 +166,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         middles.map(move |(i, place)| (place.column, place.left + 0.5 * self.side, room(i)))
     }
 
-    /// Returns the width of the widest block.
+    /// The width of the widest block.
     pub(crate) fn width(&self) -> f64 {
         let ends = self.blocks.iter().filter_map(|block| block.last());
         let right = ends
@@ -184,7 +184,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// Returns the width over which the x label of a picture is centred. If the pictures of a block
+    /// The width over which the x label of a picture is centred. If the pictures of a block
     /// are narrow and have the same axis, this width is the width of the entire block. Returns
     /// `None` if the picture shares the label of a picture further to the left.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
@@ -197,7 +197,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// Returns the height over which the y label of a picture is centred. The height includes all
+    /// The height over which the y label of a picture is centred. The height includes all
     /// pictures further down that have the same axes as the picture. Returns `None` if the picture
     /// shares the label of a picture further up.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
@@ -243,7 +243,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
-    /// Returns the largest value of the rows that share a color bar with the row `index`.
+    /// The largest value of the rows that share a color bar with the row `index`.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
         let peaks = rows.flat_map(|row| &row.pictures);
@@ -315,7 +315,7 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
     }
 }
 
-/// Returns the ends of the part of a line that is inside a picture; `None` if the line does not
+/// The ends of the part of a line that is inside a picture; `None` if the line does not
 /// cross the picture.
 fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     let [left, right] = panel.x.range();

@@ -7,7 +7,7 @@ use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
-/// Returns the data URI of a picture of `values` [x, y], with x to the right and y upwards. Returns
+/// The data URI of a picture of `values` [x, y], with x to the right and y upwards. Returns
 /// `None` if there are no cells.
 pub(crate) fn heat_map(
     values: ArrayView2<'_, f64>,
@@ -19,7 +19,7 @@ pub(crate) fn heat_map(
     })
 }
 
-/// Returns the data URI of a vertical strip of all colors, with the lowest values at the bottom.
+/// The data URI of a vertical strip of all colors, with the lowest values at the bottom.
 pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
     const LEVELS: usize = 256;
     picture(1, LEVELS, |_, j| {
@@ -28,7 +28,7 @@ pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
     })
 }
 
-/// Returns the data URI of a picture of `columns` × `rows` pixels, whose colors are a function of
+/// The data URI of a picture of `columns` × `rows` pixels, whose colors are a function of
 /// (column, row). Row 0 is at the top.
 fn picture(
     columns: usize,
@@ -52,7 +52,7 @@ fn picture(
     Ok(Some(format!("data:image/png;base64,{text}")))
 }
 
-/// Returns a photograph as a grey PNG. The values of `radiance` are given in rows from the top, and
+/// A photograph as a grey PNG. The values of `radiance` are given in rows from the top, and
 /// are converted by the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the
 /// pixels is drawn white.
 ///

@@ -31,7 +31,7 @@ pub(crate) fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
     svg.polygon(&[to, wings[0], wings[1]], INK);
 }
 
-/// Returns the color and the line width of a segment.
+/// The color and the line width of a segment.
 pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
     match kind {
         SegmentKind::Light => (LIGHT, 6.0),

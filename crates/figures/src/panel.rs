@@ -30,7 +30,7 @@ pub(crate) struct Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    /// Returns a panel with labels along both of its axes.
+    /// A panel with labels along both of its axes.
     pub(crate) fn new(area: Area, x: &'a Axis, y: &'a Axis) -> Self {
         Self {
             area,
@@ -62,7 +62,7 @@ impl<'a> Panel<'a> {
         self.y_axis(svg);
     }
 
-    /// Returns the position in the drawing of the point (x, y) of the axes.
+    /// The position in the drawing of the point (x, y) of the axes.
     pub(crate) fn point(&self, x: f64, y: f64) -> [f64; 2] {
         [
             self.area.x + self.x.fraction(x) * self.area.width,

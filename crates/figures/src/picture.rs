@@ -23,7 +23,7 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// Returns the picture of values, without lines over it.
+    /// The picture of values, without lines over it.
     #[must_use]
     pub fn new([x, y]: [Axis; 2], values: ArrayView2<'a, f64>) -> Self {
         Self {
@@ -35,17 +35,17 @@ impl<'a> Picture<'a> {
         }
     }
 
-    /// Returns the values that are drawn.
+    /// The values that are drawn.
     pub(crate) fn drawn(&self) -> ArrayView2<'a, f64> {
         self.finer.unwrap_or(self.values)
     }
 
-    /// Returns the table headings of both axes.
+    /// The table headings of both axes.
     pub(crate) fn headings(&self) -> [String; 2] {
         [&self.x, &self.y].map(|axis| axis.quantity.heading())
     }
 
-    /// Returns the centre and the value of each cell as text, with x varying slowest.
+    /// The centre and the value of each cell as text, with x varying slowest.
     pub(crate) fn cells(&self) -> Vec<[String; 3]> {
         let (columns, rows) = self.values.dim();
         let cell = |((i, j), value): ((usize, usize), &f64)| {
@@ -55,7 +55,7 @@ impl<'a> Picture<'a> {
         self.values.indexed_iter().map(cell).collect()
     }
 
-    /// Returns the ratio of the picture's height to its width. The ratio is 1 unless both axes
+    /// The ratio of the picture's height to its width. The ratio is 1 unless both axes
     /// count pixels, which are drawn square.
     pub(crate) fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
@@ -66,7 +66,7 @@ impl<'a> Picture<'a> {
         1.0
     }
 
-    /// Returns the numbers of this picture, which shows `of` in a row and a column.
+    /// The numbers of this picture, which shows `of` in a row and a column.
     pub(crate) fn numbers(&self, row: &str, column: &str, of: &AxisQuantity) -> DrawnPicture {
         let (columns, rows) = self.values.dim();
         let axis = |axis: &Axis, count| {
@@ -84,7 +84,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// Returns the numbers of the pictures of rows whose columns have these names.
+/// The numbers of the pictures of rows whose columns have these names.
 pub(crate) fn drawn_pictures<'b>(
     rows: &[PlateRow<'_>],
     columns: impl Iterator<Item = &'b String> + Clone,
@@ -127,7 +127,7 @@ pub struct PlateRow<'a> {
 }
 
 impl<'a> PlateRow<'a> {
-    /// Returns a row whose quantity has its own name beside the colors.
+    /// A row whose quantity has its own name beside the colors.
     #[must_use]
     pub fn new(
         name: &'a str,
@@ -146,7 +146,7 @@ impl<'a> PlateRow<'a> {
         }
     }
 
-    /// Returns the quantity beside the colors.
+    /// The quantity beside the colors.
     fn bar(&self) -> AxisQuantity {
         if self.shared {
             AxisQuantity::new(self.bar.unwrap_or(&self.quantity.name), &self.quantity.unit)

@@ -208,7 +208,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     y + 5.0
 }
 
-/// Returns the table of the numbers that the bars show.
+/// The table of the numbers that the bars show.
 fn numbers(plate: &Plate<'_>) -> Result<String, Error> {
     let Some(bars) = &plate.bars else {
         return Ok(String::new());

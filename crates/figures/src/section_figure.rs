@@ -7,7 +7,7 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
-    /// Returns the z of the first light, or 0 if no light is behind the start of the central ray.
+    /// The z of the first light, or 0 if no light is behind the start of the central ray.
     pub(crate) fn first_light(&self) -> f64 {
         let lights = self
             .segments

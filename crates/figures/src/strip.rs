@@ -108,7 +108,7 @@ fn keys(
     y
 }
 
-/// Returns the lines over the first row of pictures that has lines.
+/// The lines over the first row of pictures that has lines.
 fn guides<'a>(rows: &'a [PlateRow<'_>]) -> Vec<&'a Guide> {
     let mut each = rows.iter().map(|row| {
         let guides = row.pictures.iter().flat_map(|picture| &picture.guides);
@@ -142,7 +142,7 @@ fn guide_keys(svg: &mut Svg, guides: &[&Guide], [x, y]: [f64; 2], style: &Style)
     }
 }
 
-/// Returns the table of a strip, with a row for each cell of each picture. In the table, pictures
+/// The table of a strip, with a row for each cell of each picture. In the table, pictures
 /// are in the order of the strip, and x varies slowest.
 fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
     let header = [

@@ -43,7 +43,7 @@ impl Style {
     /// Minimum and maximum page width in inches: one journal column, and two columns.
     pub const WIDTHS: [f64; 2] = [3.3, 7.0];
 
-    /// Returns the width of the page in SVG units.
+    /// The width of the page in SVG units.
     pub(crate) fn page(&self) -> f64 {
         INCH * self.width
     }

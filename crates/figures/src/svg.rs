@@ -14,7 +14,7 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// Returns the rectangle with this upper left corner and this width and height.
+    /// The rectangle with this upper left corner and this width and height.
     pub(crate) fn new([x, y]: [f64; 2], [width, height]: [f64; 2]) -> Self {
         Self {
             x,
@@ -76,7 +76,7 @@ impl TextStyle {
         Self { fill, ..self }
     }
 
-    /// Returns the style for text that runs upwards.
+    /// The style for text that runs upwards.
     pub(crate) fn upwards(self) -> Self {
         Self {
             upwards: true,
@@ -263,7 +263,7 @@ impl Svg {
         y + 6.0
     }
 
-    /// Returns the finished SVG document, on a white background.
+    /// The finished SVG document, on a white background.
     pub(crate) fn finish(self, width: f64, height: f64) -> String {
         let (w, h) = (width.ceil(), height.ceil());
         let mut out = String::with_capacity(self.body.len() + 512);
@@ -286,7 +286,7 @@ fn is_near(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= MAX_COORDINATE)
 }
 
-/// Returns the part of a line within the coordinate limit (Liang and Barsky 1984, ACM Transactions
+/// The part of a line within the coordinate limit (Liang and Barsky 1984, ACM Transactions
 /// on Graphics 3(1)).
 fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
@@ -308,7 +308,7 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     (first < last).then_some(ends)
 }
 
-/// Returns SVG path data through the given points.
+/// SVG path data through the given points.
 fn path(points: &[[f64; 2]]) -> String {
     let mut data = String::new();
     for (i, [x, y]) in points.iter().enumerate() {
@@ -323,7 +323,7 @@ fn place(area: Area) -> String {
     format!(" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"")
 }
 
-/// Returns a coordinate rounded to a hundredth of a unit.
+/// A coordinate rounded to a hundredth of a unit.
 fn number(value: f64) -> String {
     let rounded = (value * 100.0).round() / 100.0 + 0.0;
     if rounded.is_finite() {

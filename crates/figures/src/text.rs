@@ -19,7 +19,7 @@ enum TextLevel {
 }
 
 impl TextLevel {
-    /// Returns the offset below the baseline, relative to the text size.
+    /// The offset below the baseline, relative to the text size.
     fn depth(self) -> f64 {
         match self {
             Self::Below => 0.2,
@@ -32,7 +32,7 @@ impl TextLevel {
 /// Font size of subscripts and superscripts, relative to the font size of the text.
 const SCRIPT_SIZE: f64 = 0.72;
 
-/// Returns the SVG content for markup at the font size `size`, in SVG units.
+/// The SVG content for markup at the font size `size`, in SVG units.
 ///
 /// Subscripts and superscripts are shifted by `dy`, because some browsers do not support
 /// `baseline-shift`.
@@ -63,7 +63,7 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
     content
 }
 
-/// Returns the text of markup without its marks.
+/// The text of markup without its marks.
 pub(crate) fn plain(markup: &str) -> String {
     runs(markup).into_iter().map(|run| run.text).collect()
 }
@@ -131,7 +131,7 @@ pub(crate) fn escape(text: &str) -> String {
     out
 }
 
-/// Returns the mean advance width of a letter of DejaVu Sans, in em, by the kind of the letter.
+/// The mean advance width of a letter of DejaVu Sans, in em, by the kind of the letter.
 fn advance(c: char) -> f64 {
     match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | ' ' | '|' | 'I' | '(' | ')' => 0.33,
@@ -143,7 +143,7 @@ fn advance(c: char) -> f64 {
     }
 }
 
-/// Returns the runs of markup; unpaired marks are plain text.
+/// The runs of markup; unpaired marks are plain text.
 fn runs(markup: &str) -> Vec<TextRun> {
     let mut runs = Vec::new();
     let mut rest = markup;
@@ -166,7 +166,7 @@ fn push(runs: &mut Vec<TextRun>, text: &str) {
     }
 }
 
-/// Returns the first complete mark: the text before the mark, the marked run, and the text after
+/// The first complete mark: the text before the mark, the marked run, and the text after
 /// the mark.
 fn next_mark(text: &str) -> Option<(&str, TextRun, &str)> {
     let kinds = [

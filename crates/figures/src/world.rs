@@ -47,7 +47,7 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Returns the scale in units per metre, and the centre of the drawing. With both, the path,
+    /// The scale in units per metre, and the centre of the drawing. With both, the path,
     /// the planes and the lights are visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
@@ -79,7 +79,7 @@ impl DrawnWorld {
         )
     }
 
-    /// Returns a position for the number of a plane. The number is beyond one end of the plane,
+    /// A position for the number of a plane. The number is beyond one end of the plane,
     /// and clear of objects and other numbers.
     fn free(
         &self,
@@ -124,7 +124,7 @@ impl DrawnWorld {
     }
 }
 
-/// Returns the distance of a point from a line.
+/// The distance of a point from a line.
 fn distance([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let along = [to[0] - from[0], to[1] - from[1]];
     let off = [x - from[0], y - from[1]];

@@ -80,7 +80,7 @@ fn lines(count: usize) -> Curves {
     }
 }
 
-/// Returns a chart of several names, one of which is long.
+/// A chart of several names, one of which is long.
 fn named(count: usize) -> Chart {
     let curve = |kind, name: &str, aside: f64, error: f64| {
         let points = (0..count).map(|i| [i as f64 + aside, 1.0 / (i + 1) as f64, error]);
@@ -138,7 +138,7 @@ fn single_values_are_visible() {
     assert_eq!(drawn.svg.matches("stroke=\"#1f6fb4\"").count(), 2);
 }
 
-/// Returns the texts of a figure with the boxes of their lines, and the size of the canvas.
+/// The texts of a figure with the boxes of their lines, and the size of the canvas.
 fn written(figure: &Figure) -> (Vec<(String, usvg::Rect)>, usvg::Size) {
     let tree = usvg::Tree::from_str(&with_font(&figure.svg), &options()).unwrap();
     (texts(tree.root()), tree.size())
@@ -210,7 +210,7 @@ fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }
 
-/// Returns all texts of an SVG tree with the boxes of their ink.
+/// All texts of an SVG tree with the boxes of their ink.
 fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let mut found = Vec::new();
     for node in group.children() {

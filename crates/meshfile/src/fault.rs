@@ -12,7 +12,7 @@ pub struct Fault {
     pub allowed: String,
 }
 
-/// Returns a fault with its position, the text at this position, and what is allowed there.
+/// A fault with its position, the text at this position, and what is allowed there.
 pub(crate) fn fault(
     field: impl Into<String>,
     value: impl ToString,

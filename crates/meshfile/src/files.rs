@@ -30,7 +30,7 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh as a binary little-endian PLY file. Coordinates are written as `double` and
+    /// The mesh as a binary little-endian PLY file. Coordinates are written as `double` and
     /// indices as `uint`, so no digits are lost.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {

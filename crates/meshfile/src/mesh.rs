@@ -21,7 +21,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Returns the mesh of the given triangles. Real files contain triangles whose area is zero in
+    /// The mesh of the given triangles. Real files contain triangles whose area is zero in
     /// f64; these triangles are left out. A scene may drop or refuse further triangles, depending
     /// on where the scene places the mesh.
     ///
@@ -52,7 +52,7 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh under an affine map. If the map mirrors the mesh, the order of corners is
+    /// The mesh under an affine map. If the map mirrors the mesh, the order of corners is
     /// reversed, so that triangles still face outward.
     ///
     /// # Errors
@@ -65,25 +65,25 @@ impl Mesh {
         Self::new(vertices.collect(), triangles.collect())
     }
 
-    /// Returns the vertices of the mesh, to which triangles refer by index.
+    /// The vertices of the mesh, to which triangles refer by index.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Returns the corners of each triangle, as indices into [`Mesh::vertices`].
+    /// The corners of each triangle, as indices into [`Mesh::vertices`].
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Returns the three corner points of each triangle, triangle by triangle.
+    /// The three corner points of each triangle, triangle by triangle.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let point = |i: u32| self.vertices[i as usize];
         self.triangles.iter().map(move |corners| corners.map(point))
     }
 
-    /// Returns the lowest and highest coordinates of the triangles.
+    /// The lowest and highest coordinates of the triangles.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -121,7 +121,7 @@ pub(crate) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Re
     }
 }
 
-/// Returns the triangles of a face as a fan about the face's first corner.
+/// The triangles of a face as a fan about the face's first corner.
 pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

@@ -83,7 +83,7 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Returns the statements of an OBJ file, each with the number of its first line. Comments are
+/// The statements of an OBJ file, each with the number of its first line. Comments are
 /// removed, and continued lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
@@ -107,7 +107,7 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Returns the points of the `v` lines. At least one point is required, and values after the three
+/// The points of the `v` lines. At least one point is required, and values after the three
 /// coordinates (weight, color) are ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
@@ -142,7 +142,7 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Returns the triangles of the `f` lines; at least one is required. `index` returns the vertex of
+/// The triangles of the `f` lines; at least one is required. `index` returns the vertex of
 /// a corner. Its arguments are the corner's word and the numbers of `v`, `vt` and `vn` lines above
 /// the corner's line.
 fn triangles(
@@ -181,7 +181,7 @@ fn triangles(
     }
 }
 
-/// Returns the numbers on each line whose first word is `word`. A `vt` line may omit its second
+/// The numbers on each line whose first word is `word`. A `vt` line may omit its second
 /// number.
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();
@@ -207,7 +207,7 @@ fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Faul
     Ok(rows)
 }
 
-/// Returns the indices of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
+/// The indices of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
 fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, CornerFault> {
     let first = corner(word, before[0], counts[0])?;
     let mut others = word.split(|b| *b == b'/').skip(1);
@@ -225,7 +225,7 @@ type CornerKey = (u32, Option<u32>, Option<u32>);
 /// The text of a faulty corner, and a description of the values that are allowed.
 type CornerFault = (String, String);
 
-/// Returns the vertex index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. Indices count
+/// The vertex index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. Indices count
 /// from 1, and negative indices count backwards from the last of the `before` vertices above the
 /// line.
 fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {

@@ -5,7 +5,7 @@ use crate::mesh::Mesh;
 use glam::DVec3;
 
 impl Mesh {
-    /// Returns a smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤
+    /// A smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤
     /// `half`, facing along z.
     ///
     /// The mesh has `cells` × `cells` squares, each cut into two triangles along the same

@@ -75,7 +75,7 @@ pub(crate) fn read(
     Ok(mesh)
 }
 
-/// Returns the positions of x, y and z among the properties of a PLY vertex.
+/// The positions of x, y and z among the properties of a PLY vertex.
 fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(AXES) {
@@ -90,7 +90,7 @@ fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     Ok(axes)
 }
 
-/// Returns the position of the list of corners among the properties of a PLY face.
+/// The position of the list of corners among the properties of a PLY face.
 fn list(element: &PlyElement) -> Result<usize, Fault> {
     let names = ["vertex_indices", "vertex_index"];
     let mut properties = element.properties.iter();
@@ -107,7 +107,7 @@ fn list(element: &PlyElement) -> Result<usize, Fault> {
     Ok(found)
 }
 
-/// Returns the numbers in some columns of a row, which are within the range of coordinates.
+/// The numbers in some columns of a row, which are within the range of coordinates.
 fn numbers<const N: usize>(
     row: PlyRow<'_>,
     values: &[Vec<f64>],

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 impl Mesh {
-    /// Returns a smooth, closed, star-shaped surface around the origin, which has lobes around the
+    /// A smooth, closed, star-shaped surface around the origin, which has lobes around the
     /// z axis. The surface is a sphere plus a sectoral harmonic. The radius of the surface is r(θ,
     /// φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`.
     ///
@@ -51,7 +51,7 @@ impl Mesh {
     }
 }
 
-/// Returns the triangles of the caps about the two poles, and two triangles for each cell between
+/// The triangles of the caps about the two poles, and two triangles for each cell between
 /// the caps.
 fn triangles(rings: u32, segments: u32) -> Vec<[u32; 3]> {
     let at = |ring: u32, segment: u32| 1 + (ring - 1) * segments + segment % segments;

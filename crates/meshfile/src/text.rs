@@ -60,13 +60,13 @@ impl<'a> Iterator for LineWords<'a> {
     }
 }
 
-/// Returns the number that a word represents. The number is decimal with an optional exponent,
+/// The number that a word represents. The number is decimal with an optional exponent,
 /// infinite, or NaN.
 pub(crate) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Returns the first few bytes of a word, for a message.
+/// The first few bytes of a word, for a message.
 pub(crate) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);

@@ -14,7 +14,7 @@ fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, Fault> {
     Mesh::parse(Path::new(name), bytes.as_ref())
 }
 
-/// Returns the enclosed volume, by the divergence theorem; positive when triangles face outward.
+/// The enclosed volume, by the divergence theorem; positive when triangles face outward.
 fn volume(mesh: &Mesh) -> f64 {
     mesh.corners()
         .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
@@ -34,7 +34,7 @@ fn closed(mesh: &Mesh) -> bool {
     edges.values().all(|walks| *walks == [1, 1])
 }
 
-/// Returns the Euler characteristic of a closed mesh, which is vertices − edges + faces: 2 for
+/// The Euler characteristic of a closed mesh, which is vertices − edges + faces: 2 for
 /// the topology of a sphere.
 fn euler(mesh: &Mesh) -> usize {
     mesh.vertices().len() + mesh.triangles().len() - mesh.triangles().len() * 3 / 2
@@ -219,7 +219,7 @@ fn faults_of_obj_files_are_told() {
     assert_eq!(told, "vertices (`v` lines) is 0; allowed: at least 3");
 }
 
-/// Returns a PLY file of a triangle with `from` replaced by `to`; the file must contain `from`.
+/// A PLY file of a triangle with `from` replaced by `to`; the file must contain `from`.
 fn edited(from: &str, to: &str) -> String {
     let sound = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                  element face 1\nproperty list uchar int vertex_indices\nend_header\n\

@@ -3,7 +3,7 @@
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
-use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
+use etendue_adaptive::{Layers, SampleMethod, SamplePlan, render};
 use etendue_figures::{
     Axis, AxisQuantity, Figure, Palette, Picture, Plate, PlateRow, Scale, Style, plate, stacked,
 };
@@ -12,7 +12,7 @@ use etendue_paths::Paths;
 use etendue_pipeline::{Reporter, Work};
 use etendue_store::Failure;
 use etendue_world::Camera;
-use ndarray::{Array2, Axis as Along};
+use ndarray::{Array2, Axis as Along, stack};
 use std::fs;
 
 /// Number of pixels per shading sample, as in the paper.
@@ -20,6 +20,9 @@ const SPARSE: usize = 20;
 
 /// Number of paths per shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
+
+/// Number of runs from which the standard errors of criteria are estimated.
+const RUNS: u64 = 4;
 
 /// If the difference of a pixel, relative to white, exceeds this limit, the color of the pixel no
 /// longer changes.
@@ -34,7 +37,7 @@ struct CreatureScene {
 }
 
 impl CreatureScene {
-    /// Returns the creatures scene, at the size for this quality.
+    /// The creatures scene, at the size for this quality.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
         for (name, bytes) in etendue_scenes::CREATURES {
@@ -65,19 +68,33 @@ impl CreatureScene {
         })
     }
 
-    fn rendered(&self, method: SampleMethod) -> Rendered {
+    fn rendered(&self, method: SampleMethod, each: u32, seed: u64) -> (Vec<f64>, Layers) {
         let plan = SamplePlan {
             method,
             samples: self.samples,
-            each: PATHS_PER_SAMPLE,
+            each,
             blocker_rays: method.blocker_rays(),
             is_even: method == SampleMethod::Paper,
-            seed: 1,
+            seed,
         };
-        render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
+        let found = render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {});
+        (found.radiance, found.layers)
     }
 
-    /// Returns the values of pixels as an array [column, row] whose first row is the lowest, as
+    /// A quantity of the first run as a picture, and its standard error from all runs.
+    fn with_error(
+        &self,
+        runs: &[Layers],
+        of: impl Fn(&Layers) -> Vec<f64>,
+    ) -> Result<[Array2<f64>; 2], Failure> {
+        let each = runs.iter().map(|run| self.picture(of(run)));
+        let each: Vec<Array2<f64>> = each.collect::<Result<_, _>>()?;
+        let all: Vec<_> = each.iter().map(|array| array.view()).collect();
+        let all = stack(Along(0), &all).map_err(Failure::cannot_run)?;
+        Ok([each[0].clone(), all.std_axis(Along(0), 1.0)])
+    }
+
+    /// The values of pixels as an array [column, row] whose first row is the lowest, as
     /// figures require.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
@@ -138,33 +155,46 @@ impl CreatureScene {
 /// Draws Fig. 16.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let scene = CreatureScene::new(taken.quality)?;
-    let [paper, corrected] =
-        [SampleMethod::Paper, SampleMethod::Predicted].map(|method| scene.rendered(method).layers);
-    let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
-    let [curvature, blockers] = [squares(&paper.unoccluded)?, squares(&paper.blockers)?];
-    let [printed, corrected] = [squares(&paper.bandwidth)?, squares(&corrected.bandwidth)?];
-    let up_to_one =
-        |values: &[f64]| scene.picture(values.iter().map(|n| n.clamp(0.0, 1.0)).collect());
-    let [density, dots] = [up_to_one(&paper.density)?, up_to_one(&paper.samples)?];
+    // Criteria do not depend on the number of paths.
+    let runs = |method| -> Vec<Layers> {
+        let each = (1..=RUNS).map(|seed| scene.rendered(method, 1, seed).1);
+        each.collect()
+    };
+    let [paper, corrected] = [SampleMethod::Paper, SampleMethod::Predicted].map(runs);
+    let squares = |runs: &[Layers], of: fn(&Layers) -> &Vec<f64>| {
+        scene.with_error(runs, |run| of(run).iter().map(|x| x * x).collect())
+    };
+    let up_to_one = |of: fn(&Layers) -> &Vec<f64>| {
+        let clamped = |run: &Layers| of(run).iter().map(|n| n.clamp(0.0, 1.0)).collect();
+        scene.with_error(&paper, clamped)
+    };
+    let curvature = squares(&paper, |run| &run.unoccluded)?;
+    let blockers = squares(&paper, |run| &run.blockers)?;
+    let printed = squares(&paper, |run| &run.bandwidth)?;
+    let corrected = squares(&corrected, |run| &run.bandwidth)?;
+    let [density, dots] = [
+        up_to_one(|run| &run.density)?,
+        up_to_one(|run| &run.samples)?,
+    ];
     let squared = |words, panels: [(&str, &Array2<f64>); 2]| {
         let scale = Scale::Decibel { floor: -50.0 };
         scene.side_by_side(&taken.style, words, ("square", scale), &plain(panels))
     };
-    let of_samples = plain([("(e) density", &density), ("(f) samples", &dots)]);
-    Ok(stacked(&[
+    let of_samples = plain([("(e) density", &density[0]), ("(f) samples", &dots[0])]);
+    let mut figure = stacked(&[
         squared(
             [
                 "Criteria and shading samples",
                 "(a) The bandwidth by Eq. 20, from finite differences on the screen. (b) 1/*d'*, the harmonic mean over the hemisphere. (a) to (d) are squared, in decibels below the largest value of each picture.",
             ],
-            [("(a) curvature", &curvature), ("(b) blockers", &blockers)],
+            [("(a) curvature", &curvature[0]), ("(b) blockers", &blockers[0])],
         )?,
         squared(
             [
                 "",
                 "(c) The bandwidth by Eq. 21, as printed. (d) The same, corrected, in the direction where it is largest.",
             ],
-            [("(c) Eq. 21", &printed), ("(d) Eq. 21, corrected", &corrected)],
+            [("(c) Eq. 21", &printed[0]), ("(d) Eq. 21, corrected", &corrected[0])],
         )?,
         scene.side_by_side(
             &photographs(&taken.style),
@@ -175,7 +205,12 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             ("samples per pixel", Scale::Linear),
             &of_samples,
         )?,
-    ]))
+    ]);
+    let estimated = [blockers, printed, corrected, density];
+    for (picture, [_, error]) in figure.pictures[1..].iter_mut().zip(estimated) {
+        picture.sigma = Some(error);
+    }
+    Ok(figure)
 }
 
 /// The pictures of Fig. 17: radiance in rows from the top.
@@ -196,7 +231,7 @@ impl ComparedPictures {
             SampleMethod::Paper,
             SampleMethod::Predicted,
         ];
-        let few = methods.map(|method| scene.rendered(method).radiance);
+        let few = methods.map(|method| scene.rendered(method, PATHS_PER_SAMPLE, 1).0);
         let paths = &scene.paths;
         let reference = paths.picture(&scene.camera, scene.reference, 2, &|_| {});
         Self {
@@ -206,25 +241,25 @@ impl ComparedPictures {
         }
     }
 
-    /// Returns the relative luminance, which is radiance divided by the radiance of white, and at
+    /// The relative luminance, which is radiance divided by the radiance of white, and at
     /// most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
 
-    /// Returns the standard error of the reference's relative luminance.
+    /// The standard error of the reference's relative luminance.
     fn reference_error(&self, scene: &CreatureScene) -> Result<Array2<f64>, Failure> {
         let variance = self.reference.variance.iter();
         scene.picture(variance.map(|v| v.sqrt() / self.white).collect())
     }
 
-    /// Returns the difference from the reference, relative to white.
+    /// The difference from the reference, relative to white.
     fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         let both = of.iter().zip(&self.reference.mean);
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// Returns the relative mean square error of a picture, and this error without the thousandth
+    /// The relative mean square error of a picture, and this error without the thousandth
     /// of the pixels that have the largest errors. The noise of the reference is subtracted.
     fn errors(&self, of: &[f64]) -> [f64; 2] {
         let reference = &self.reference.mean;
@@ -233,7 +268,7 @@ impl ComparedPictures {
         mean_errors(squares)
     }
 
-    /// Returns the relative mean square error of the reference due to its noise.
+    /// The relative mean square error of the reference due to its noise.
     fn noise(&self) -> f64 {
         let squares = self.reference.variance.iter().map(|noise| [*noise, 0.0]);
         mean_errors(self.relative(squares))[0]
@@ -249,7 +284,7 @@ impl ComparedPictures {
     }
 }
 
-/// Returns the mean of differences between errors and their noise, over all pixels and without the
+/// The mean of differences between errors and their noise, over all pixels and without the
 /// thousandth of the pixels that have the largest errors.
 fn mean_errors(mut each: Vec<[f64; 2]>) -> [f64; 2] {
     each.sort_unstable_by(|[a, _], [b, _]| a.total_cmp(b));
@@ -311,14 +346,14 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(figure)
 }
 
-/// Returns the radiance that a hundredth of the pixels exceed.
+/// The radiance that a hundredth of the pixels exceed.
 fn bright(radiance: &[f64]) -> f64 {
     let mut sorted = radiance.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted[sorted.len() * 99 / 100].max(f64::MIN_POSITIVE)
 }
 
-/// Returns the style with a grey scale for photographs.
+/// The style with a grey scale for photographs.
 fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,
@@ -329,6 +364,21 @@ fn photographs(style: &Style) -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The rays that find blockers differ between runs; the criterion without blockers has no rays.
+    #[test]
+    fn only_criteria_with_blockers_have_errors() {
+        let scene = CreatureScene::new(Quality::Sketch).unwrap();
+        let largest = |runs: [Layers; 2], of: fn(&Layers) -> &Vec<f64>| {
+            let [_, errors] = scene.with_error(&runs, |run| of(run).clone()).unwrap();
+            errors.into_iter().fold(0.0, f64::max)
+        };
+        let run = |each, seed| scene.rendered(SampleMethod::Paper, each, seed).1;
+        let seeds = || [run(1, 1), run(1, 2)];
+        assert!(largest(seeds(), |run| &run.unoccluded) == 0.0);
+        assert!(largest(seeds(), |run| &run.bandwidth) > 0.0);
+        assert!(largest([run(1, 1), run(16, 1)], |run| &run.bandwidth) == 0.0);
+    }
 
     /// One bright pixel of a thousand dominates the mean, but not the robust mean.
     #[test]

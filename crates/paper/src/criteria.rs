@@ -98,7 +98,7 @@ fn panel(
     Ok(CurvePanel::new(sweep.title, sweep.quantity.clone(), curves))
 }
 
-/// Returns the bandwidth by the criterion in two versions: corrected, and as printed in the paper.
+/// The bandwidth by the criterion in two versions: corrected, and as printed in the paper.
 /// If the scene has an edge, the function returns the bandwidth behind the edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
@@ -115,7 +115,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// Returns a measurement with photons: the value on the axis, the bandwidth and its standard error.
+/// A measurement with photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

@@ -21,7 +21,7 @@ const HEADER: [&str; 5] = ["file", "name", "unit", "axes", "meaning"];
 /// vertical axis shows.
 const WORDS: &str = include_str!("words.csv");
 
-/// Returns the unit, the axes and the meaning of an array, a row or a column; empty if it has none.
+/// The unit, the axes and the meaning of an array, a row or a column; empty if it has none.
 fn words_of(kind: &str, name: &str) -> [String; 3] {
     let mut reader = csv::Reader::from_reader(WORDS.as_bytes());
     let mut known = reader.records().filter_map(Result::ok);
@@ -31,7 +31,7 @@ fn words_of(kind: &str, name: &str) -> [String; 3] {
     })
 }
 
-/// Returns the names and contents of the data files of a figure.
+/// The names and contents of the data files of a figure.
 pub(crate) fn files(
     figure: &Figure,
     shots: &[Shot],
@@ -60,7 +60,7 @@ pub(crate) fn files(
     Ok(files)
 }
 
-/// Returns the descriptions of the columns of a table.
+/// The descriptions of the columns of a table.
 fn columns(csv: &str) -> Result<Vec<[String; 5]>, Failure> {
     let mut reader = csv::Reader::from_reader(csv.as_bytes());
     let header = reader.headers().map_err(Failure::cannot_run)?;
@@ -201,7 +201,7 @@ impl Arrays {
     }
 }
 
-/// Returns a text as a word: its ASCII letters and digits, in lower case, joined by underscores.
+/// A text as a word: its ASCII letters and digits, in lower case, joined by underscores.
 fn word(text: &str) -> String {
     let parts = text.split(|c: char| !c.is_ascii_alphanumeric());
     let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();

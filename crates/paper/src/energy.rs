@@ -3,7 +3,7 @@
 /// Number of steps of a sum up to the largest frequency.
 const STEPS: usize = 3000;
 
-/// Returns a frequency for each share. Below this frequency, a spectrum has this share of its
+/// A frequency for each share. Below this frequency, a spectrum has this share of its
 /// energy. The frequency is in the unit of `largest`, and `None` if it would be above `largest`.
 ///
 /// `hat` is the transform of an even function, and `energy` is the integral of this function's

@@ -88,14 +88,14 @@ impl Flatland {
         })
     }
 
-    /// Returns |S|² of a step as an array [ρ, ν], in the window and at the frequencies of a plane.
+    /// |S|² of a step as an array [ρ, ν], in the window and at the frequencies of a plane.
     pub(crate) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
         let window = [&plane.window.x, &plane.window.u];
         let spectrum = self.spectrum(step, window, [&plane.grid.rho, &plane.grid.nu]);
         spectrum.mapv(|s| s.norm_sqr())
     }
 
-    /// Returns the spectrum of the windowed light field after a step, as an array [ρ, ν] with
+    /// The spectrum of the windowed light field after a step, as an array [ρ, ν] with
     /// ascending ρ and ν. The profiles and axes are for x and v.
     ///
     /// The integral over positions is in closed form, and the integral over slopes is a midpoint
@@ -126,7 +126,7 @@ impl Flatland {
         product(rows, [rho, nu])
     }
 
-    /// Returns the intervals of positions that light of slope v reaches.
+    /// The intervals of positions that light of slope v reaches.
     fn seen(&self, step: DiffuseStep, v: f64) -> Vec<[f64; 2]> {
         let distance = match step {
             DiffuseStep::Emission => 0.0,
@@ -180,7 +180,7 @@ impl Flatland {
     }
 }
 
-/// Returns the parts of an interval that the given intervals, in ascending order, do not cover.
+/// The parts of an interval that the given intervals, in ascending order, do not cover.
 fn open([from, to]: [f64; 2], intervals: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut parts = Vec::new();
     let mut low = from;
@@ -196,14 +196,14 @@ fn open([from, to]: [f64; 2], intervals: impl Iterator<Item = [f64; 2]>) -> Vec<
     parts
 }
 
-/// Returns nodes and weights of the midpoint rule within a profile.
+/// Nodes and weights of the midpoint rule within a profile.
 fn midpoints(profile: &Profile) -> impl Iterator<Item = (f64, f64)> {
     let half = profile.half_width();
     let step = 2.0 * half / NODES as f64;
     (0..NODES).map(move |i| ((i as f64 + 0.5) * step - half, step))
 }
 
-/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval. The integral has a closed form, because the
+/// ∫ W(t) e^(−2πi Ω t) dt over an interval. The integral has a closed form, because the
 /// profile is a sum of cosines.
 fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
     let half = profile.half_width();
@@ -222,7 +222,7 @@ fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
         .sum()
 }
 
-/// Returns a sum over slopes v for each ρ and ν. Each summand is a value for ρ and v, times e^(−2πi
+/// A sum over slopes v for each ρ and ν. Each summand is a value for ρ and v, times e^(−2πi
 /// ν v).
 fn product(
     rows: impl Iterator<Item = (f64, Vec<Complex>)>,

@@ -21,7 +21,7 @@ const POINTS: u32 = 400;
 /// Number of cells of a picture along each axis.
 const CELLS: usize = 121;
 
-/// Returns the curve of a function on an interval.
+/// The curve of a function on an interval.
 fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f64) -> Curve {
     let point = |i: u32| {
         let x = from + (to - from) * f64::from(i) / f64::from(POINTS);
@@ -121,7 +121,7 @@ impl KernelFactor {
             .map_or_else(|| cosine_hat(omega), |f| fresnel_cosine_hat(f, omega))
     }
 
-    /// Returns the frequencies, in cycles per radian, below which the factor has [`SHARES`] of its
+    /// The frequencies, in cycles per radian, below which the factor has [`SHARES`] of its
     /// energy.
     fn energy_below(&self) -> [Option<f64>; 3] {
         let nodes = gauss_legendre(200).into_iter();

@@ -17,7 +17,7 @@ use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results, VERSION};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Returns the requested figures: figures of the paper, or a single figure of all scene files.
+/// The requested figures: figures of the paper, or a single figure of all scene files.
 pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
     if request.wanted.iter().any(is_scene) {
@@ -27,7 +27,7 @@ pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     }
 }
 
-/// Returns the requested figures of the paper.
+/// The requested figures of the paper.
 fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let of_scenes = [
         ("set", !request.set.is_empty()),

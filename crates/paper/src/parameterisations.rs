@@ -54,7 +54,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
     Ok(figure)
 }
 
-/// Returns the radial spectra over slopes and over angles, with ρ along X, and their difference.
+/// The radial spectra over slopes and over angles, with ρ along X, and their difference.
 fn panels(
     [slopes, angles]: [&Slices; 2],
     [by_slopes, by_angles]: [&Array2<f64>; 2],
@@ -64,7 +64,7 @@ fn panels(
     [by_slopes.clone(), along_x, difference(slopes, angles)]
 }
 
-/// Returns |S_θ − S_u|², averaged over azimuths, as an array [ρ, ν] with ρ along X. S_θ is the
+/// |S_θ − S_u|², averaged over azimuths, as an array [ρ, ν] with ρ along X. S_θ is the
 /// spectrum over angles, and S_u is the spectrum over slopes.
 fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
@@ -73,7 +73,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// Returns the standard error of [`difference`]: the noise v = σ_θ² + σ_u² changes |D|² with the
+/// The standard error of [`difference`]: the noise v = σ_θ² + σ_u² changes |D|² with the
 /// variance 2 |D|² v + v². The planes share photons, whose noise partly cancels in D, so this is an
 /// upper bound. Azimuths are taken as independent.
 fn difference_error(slopes: &PlaneComparison, angles: &PlaneComparison) -> Array2<f64> {
@@ -113,7 +113,7 @@ fn over_azimuths(
     })
 }
 
-/// Returns the norm of the difference divided by the norm of the spectrum.
+/// The norm of the difference divided by the norm of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -125,7 +125,7 @@ fn off(angles: &Seen<'_>) -> Vec<String> {
     ]
 }
 
-/// Returns the 95 % bandwidths of a plane.
+/// The 95 % bandwidths of a plane.
 fn bandwidths(seen: &Seen<'_>) -> Vec<String> {
     let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
     let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];

@@ -104,7 +104,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Returns ∫ L W that a plane would have without blockers; `None` if light does not travel between
+/// ∫ L W that a plane would have without blockers; `None` if light does not travel between
 /// parallel planes.
 fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
     let index = shot

@@ -19,7 +19,7 @@ use etendue_transform::gauss_legendre;
 use ndarray::Array3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Returns a photon whose position x = sin(k s)/k on a cylinder of curvature k is replaced by the arc
+/// A photon whose position x = sin(k s)/k on a cylinder of curvature k is replaced by the arc
 /// length s.
 fn at_arc_length(crossing: &Crossing, k: f64) -> Crossing {
     Crossing {
@@ -84,7 +84,7 @@ impl ShadedCylinder {
         Ok(cylinder)
     }
 
-    /// Returns the arc lengths at the centres of the arcs.
+    /// The arc lengths at the centres of the arcs.
     fn centers(&self) -> [f64; 3] {
         CENTERS.map(|center| center * self.arc.half_width())
     }
@@ -110,7 +110,7 @@ impl ShadedCylinder {
         Ok(())
     }
 
-    /// Returns the frequencies ρ ≥ 0.
+    /// The frequencies ρ ≥ 0.
     pub(crate) fn frequencies(&self) -> Vec<f64> {
         let all = 0..=self.rho.half;
         all.map(|m| m as f64 * self.rho.spacing).collect()
@@ -122,7 +122,7 @@ impl ShadedCylinder {
         all.map(|m| sum(m) / self.batches.len() as f64).collect()
     }
 
-    /// Returns S/S(0), and the standard errors of its real and imaginary parts.
+    /// S/S(0), and the standard errors of its real and imaginary parts.
     pub(crate) fn measured(&self) -> Vec<(Complex, [f64; 2])> {
         let mean = self.mean();
         let relative: Vec<Complex> = mean.iter().map(|s| s / mean[0]).collect();
@@ -138,7 +138,7 @@ impl ShadedCylinder {
         each.collect()
     }
 
-    /// Returns S_b − S_b(0) F/F(0) for each batch. The mean over batches is zero if S is
+    /// S_b − S_b(0) F/F(0) for each batch. The mean over batches is zero if S is
     /// proportional to F.
     fn residuals(&self, relative: &[Complex]) -> Vec<Vec<Complex>> {
         let each = self.batches.iter().map(|batch| {
@@ -191,7 +191,7 @@ impl ShadedCylinder {
         })
     }
 
-    /// Returns the spectrum of light along the cylinder in the window of all arcs, at ρ ≥ 0.
+    /// The spectrum of light along the cylinder in the window of all arcs, at ρ ≥ 0.
     fn windowed(&self, light: &dyn Fn(f64) -> f64) -> Vec<Complex> {
         let end = 2.0 * self.arc.half_width();
         let window = |s: f64| self.centers().map(|center| self.arc.value(s - center));
@@ -209,7 +209,7 @@ fn steps(end: f64) -> impl Iterator<Item = f64> {
     (-STEPS..=STEPS).map(move |i| end * f64::from(i) / f64::from(STEPS))
 }
 
-/// Returns the radiance of an environment in 2D at the angle θ from the normal −Z towards −X:
+/// The radiance of an environment in 2D at the angle θ from the normal −Z towards −X:
 /// ∫ L cos² φ dφ over latitudes φ. A cylinder along Y receives ∫ cos θ of it.
 fn flat(environment: &Environment, theta: f64) -> f64 {
     let (s, c) = libm::sincos(theta);
@@ -224,7 +224,7 @@ fn flat(environment: &Environment, theta: f64) -> f64 {
     FRAC_PI_2 * gauss_legendre(64).into_iter().map(term).sum::<f64>()
 }
 
-/// Returns the irradiance at the arc length s on a cylinder of curvature k, up to a factor: the
+/// The irradiance at the arc length s on a cylinder of curvature k, up to a factor: the
 /// inverse transform of the product of spectra.
 fn irradiance_along(environment: &Environment, k: f64) -> impl Fn(f64) -> f64 {
     /// The lobes of Fig. 14(e) have no power beyond this frequency, in cycles per radian.
@@ -248,7 +248,7 @@ fn irradiance_along(environment: &Environment, k: f64) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// Returns the scene with the cylinder turned by an angle, from N towards T.
+/// The scene with the cylinder turned by an angle, from N towards T.
 fn turned(taken: &FigureData<'_>, (name, text): &Text, angle: f64) -> Result<Scene, Failure> {
     let (s, c) = libm::sincos(angle);
     let facing = format!("({:?}, 0, {:?})", -s, -c);

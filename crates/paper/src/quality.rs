@@ -18,7 +18,7 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// Returns the name of the quality in commands.
+    /// The name of the quality in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -29,7 +29,7 @@ impl Quality {
         }
     }
 
-    /// Returns the number of photons for a scene that specifies `photons`.
+    /// The number of photons for a scene that specifies `photons`.
     pub(crate) fn photons(self, photons: u64) -> u64 {
         match self {
             Self::Draft => photons / 8,
@@ -39,7 +39,7 @@ impl Quality {
         }
     }
 
-    /// Returns the number of frequencies along each axis for each frequency of the scene. The
+    /// The number of frequencies along each axis for each frequency of the scene. The
     /// window is bounded, so the spectrum between the scene's frequencies is well defined, and the
     /// picture can show this spectrum with smaller cells.
     pub(crate) fn finer(self) -> usize {

@@ -32,7 +32,7 @@ pub(crate) struct Recipe {
 }
 
 impl Recipe {
-    /// Returns the figure to be made by this recipe.
+    /// The figure to be made by this recipe.
     pub(crate) fn subject(&'static self) -> Result<Subject, Failure> {
         let scenes = self.scenes.iter();
         let scenes = scenes.map(|(name, text)| resolved(name, text, &[], |photons| photons));
@@ -218,7 +218,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
 ];
 
-/// Returns the recipe of a figure.
+/// The recipe of a figure.
 pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
     let mut recipes = RECIPES.iter();
     recipes.find(|recipe| recipe.name == name).ok_or_else(|| {

@@ -8,7 +8,7 @@ use ndarray::{Array2, Axis as Along};
 /// The phase is not shown where the power is below this share of the largest power.
 pub(crate) const MIN_POWER: f64 = 1e-5;
 
-/// Returns the power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
+/// The power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
 pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
     let full = slices.full();
     let slice = full.index_axis(Along(0), 0);
@@ -20,7 +20,7 @@ pub(crate) fn power(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, _| s.norm_sqr())
 }
 
-/// Returns the phase in degrees.
+/// The phase in degrees.
 pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
         if s.norm_sqr() > MIN_POWER * most {
@@ -31,19 +31,19 @@ pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     })
 }
 
-/// Returns a row of the measured light fields of some planes.
+/// A row of the measured light fields of some planes.
 pub(crate) fn fields<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
     light_fields(name, shared, seen.iter().map(Seen::light_field))
 }
 
-/// Returns a row of the measured spectra of some planes.
+/// A row of the measured spectra of some planes.
 pub(crate) fn measured<'a>(name: &'a str, seen: &[Seen<'a>], shared: bool) -> PlateRow<'a> {
     let each = seen.iter();
     let power = each.map(|seen| seen.spectrum(seen.found.radial.power.view()));
     spectra(name, shared, power)
 }
 
-/// Returns the light fields and the measured and predicted spectra of some planes, and their full
+/// The light fields and the measured and predicted spectra of some planes, and their full
 /// radial spectra if there are any.
 pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
     let predicted = seen
@@ -62,7 +62,7 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
     rows
 }
 
-/// Returns the headings with letters, beginning with (a).
+/// The headings with letters, beginning with (a).
 pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
     let letters = ('a'..='z').zip(heads);
     letters

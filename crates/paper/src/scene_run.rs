@@ -56,26 +56,26 @@ impl Shot {
 }
 
 impl Shot {
-    /// Returns all planes with their results.
+    /// All planes with their results.
     pub(crate) fn all(&self) -> impl Iterator<Item = Seen<'_>> {
         let both = self.scene.planes.iter().zip(&self.planes);
         both.map(|(plane, found)| Seen { plane, found })
     }
 
-    /// Returns the plane with the given name.
+    /// The plane with the given name.
     pub(crate) fn at(&self, name: &str) -> Result<Seen<'_>, Failure> {
         let missing = || Failure::cannot_run(format!("{} has no plane {name}", self.scene.name));
         let mut all = self.all();
         all.find(|seen| seen.plane.name == name).ok_or_else(missing)
     }
 
-    /// Returns the planes with the given names.
+    /// The planes with the given names.
     pub(crate) fn each(&self, names: &[&str]) -> Result<Vec<Seen<'_>>, Failure> {
         names.iter().map(|name| self.at(name)).collect()
     }
 }
 
-/// Returns a scene of the repository with some fields set, and with a number of photons derived
+/// A scene of the repository with some fields set, and with a number of photons derived
 /// from the scene's own number.
 pub(crate) fn resolved(
     name: &str,

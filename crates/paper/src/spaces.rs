@@ -92,7 +92,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[plate, error]))
 }
 
-/// Returns how the first-order errors of some planes of a scene decrease with the size of the
+/// How the first-order errors of some planes of a scene decrease with the size of the
 /// neighbourhood.
 fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Failure> {
     let scene = resolved(name, text, &[], |photons| photons)?;

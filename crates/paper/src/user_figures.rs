@@ -15,7 +15,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use std::path::PathBuf;
 
-/// Returns the figure of the requested scenes.
+/// The figure of the requested scenes.
 pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     let sources = sources(request)?;
     let mut scenes: Vec<Scene> = Vec::new();
@@ -78,7 +78,7 @@ fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     sources.collect()
 }
 
-/// Returns the plane at which each scene is shown; empty if all planes of a single scene are
+/// The plane at which each scene is shown; empty if all planes of a single scene are
 /// shown.
 fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure> {
     if scenes.len() == 1 && asked.is_none() {
@@ -124,7 +124,7 @@ fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
     words.join(" ")
 }
 
-/// Returns a plane of each scene, with one range of colors.
+/// A plane of each scene, with one range of colors.
 fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen

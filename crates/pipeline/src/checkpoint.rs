@@ -64,6 +64,7 @@ pub(crate) fn measured(
         is_full: AtomicBool::default(),
     };
     let mut all = Measurement::new(scene.planes.clone());
+    // Batches of an earlier run must not be taken for those of this run.
     if !checkpointing.resume {
         kept.remove();
     }
@@ -76,6 +77,7 @@ pub(crate) fn measured(
             drop(bar);
             return Ok(None);
         }
+        // Another process may have left batches unfinished, so what is missing is looked up again.
         let missing = keeper.missing(&mut all, &*source, &lit)?;
         if missing.is_empty() {
             break;
@@ -99,7 +101,7 @@ pub(crate) fn measured(
     Ok(Some(all))
 }
 
-/// Returns the error of a run that exceeded its time limit; the error states which batches are
+/// The error of a run that exceeded its time limit; the error states which batches are
 /// stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();

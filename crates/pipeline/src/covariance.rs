@@ -31,7 +31,7 @@ impl CovarianceStudy {
         Ok(Self(run))
     }
 
-    /// Returns the scene.
+    /// The scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.0.scene
@@ -76,7 +76,7 @@ impl CovarianceStudy {
         })
     }
 
-    /// Returns the content of the index, without its list of files.
+    /// The content of the index, without its list of files.
     #[must_use]
     pub fn index(&self, found: &SceneCovariances) -> serde_json::Value {
         let Run { scene, method, .. } = &self.0;
@@ -94,7 +94,7 @@ impl CovarianceStudy {
     }
 }
 
-/// Returns the covariances of a plane. The photons are traced once more for this plane, on a 4D
+/// The covariances of a plane. The photons are traced once more for this plane, on a 4D
 /// grid.
 fn of_plane(
     (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
@@ -124,7 +124,7 @@ fn of_plane(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the options with which a grid computes covariances, and groups of batches for their
+/// The options with which a grid computes covariances, and groups of batches for their
 /// errors.
 fn grid_options() -> FieldOptions {
     FieldOptions {
@@ -133,7 +133,7 @@ fn grid_options() -> FieldOptions {
     }
 }
 
-/// Returns the options of the grid on which a plane is measured. All groups are kept if they fit
+/// The options of the grid on which a plane is measured. All groups are kept if they fit
 /// into half of the memory; the photons then need not be traced twice.
 pub fn fitting_options(plane: &VirtualPlane) -> FieldOptions {
     let kept = FieldOptions {

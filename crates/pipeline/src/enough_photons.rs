@@ -21,6 +21,7 @@ pub(crate) fn leave_open(
     planes: &mut [PlaneComparison],
 ) -> Result<(), Failure> {
     let count = case.scene.planes.len() as u64;
+    // All photons are aimed at the only window.
     if count < 2 {
         return Ok(());
     }
@@ -37,6 +38,7 @@ pub(crate) fn leave_open(
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail
             });
+            // A first-order chain that fails beside exact theory is wrong for any number of photons.
             if !has_wrong_map {
                 report.verdict = Verdict::Undecided;
             }
@@ -109,12 +111,12 @@ pub(crate) fn name_other_method(case: &MeasuredScene, planes: &mut [PlaneCompari
     }
 }
 
-/// Returns the number of photons or rays that a verdict needs in a window.
+/// The number of photons or rays that a verdict needs in a window.
 fn least(case: &MeasuredScene) -> f64 {
     MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches)
 }
 
-/// Returns a light that one of two tracers finds too rarely, in words.
+/// A light that one of two tracers finds too rarely, in words.
 fn hidden_from_tracers(case: &MeasuredScene, plane: usize) -> Result<Option<String>, Failure> {
     let judge = judge_of(case.method, &case.scene, &case.scene.planes[plane]);
     let this = reached_by_light(case, plane, case.method)?;
@@ -131,7 +133,7 @@ fn hidden_from_tracers(case: &MeasuredScene, plane: usize) -> Result<Option<Stri
     }))
 }
 
-/// Returns a light, in words, of which theory predicts more light than the noise, but which the
+/// A light, in words, of which theory predicts more light than the noise, but which the
 /// photons find too rarely.
 fn hidden_from_photons(
     case: &MeasuredScene,
@@ -162,7 +164,7 @@ fn hidden_from_photons(
     }))
 }
 
-/// Returns how many of `photons` photons or rays of a scene with one plane reach the window of this
+/// How many of `photons` photons or rays of a scene with one plane reach the window of this
 /// plane.
 fn reached(mut alone: Scene, method: Method, photons: u64) -> Result<u64, Failure> {
     alone.run.photons = photons;
@@ -175,7 +177,7 @@ fn reached(mut alone: Scene, method: Method, photons: u64) -> Result<u64, Failur
     ))
 }
 
-/// Returns how many photons or rays of each light reach the window of a plane.
+/// How many photons or rays of each light reach the window of a plane.
 fn reached_by_light(
     case: &MeasuredScene,
     plane: usize,
@@ -201,7 +203,7 @@ fn of_each<S: PhotonSource>(lights: &AllLights<S>, scene: &Scene, plane: usize) 
     lights.each().map(reached).collect()
 }
 
-/// Returns how many of the photons of a source are inside the window of its plane `plane`.
+/// How many of the photons of a source are inside the window of its plane `plane`.
 fn inside(source: &dyn PhotonSource, plane: usize, window: &Window, batches: u32) -> u64 {
     let of_batch = |batch: u32| {
         let mut inside = 0;

@@ -178,6 +178,7 @@ fn write(
         grid, full_radial, ..
     } = measured;
     let field: &Array4<f64> = &measured.field;
+    // The field may have gigabytes, so it is written without a copy in memory.
     results.stream(&format!("{name}/field.npy"), &mut |file| {
         write_npy(file, field)
     })?;
@@ -193,6 +194,7 @@ fn write(
     };
     results.write(&format!("{name}/field.json"), &json(&index))?;
     let mut npz = Npz::default().add("power", &full_radial.power)?;
+    // Only theory predicts power; another measurement has noise of its own.
     if let Some(compared) = compared {
         npz = npz
             .add("predicted_power", &compared.predicted)?

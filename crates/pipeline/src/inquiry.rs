@@ -65,6 +65,7 @@ impl Inquiry {
         rays: f64,
     ) -> Self {
         let [this, other] = methods.map(Method::words);
+        // The three are independent: where two agree, the third is wrong.
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!(
@@ -95,7 +96,7 @@ impl Inquiry {
     }
 }
 
-/// Returns the conclusion if a measurement and a prediction disagree with each other, but another
+/// The conclusion if a measurement and a prediction disagree with each other, but another
 /// tracer with `rays` rays agrees with both of them.
 fn both_pass(
     [this, other]: [&str; 2],
@@ -131,7 +132,7 @@ fn both_pass(
     }
 }
 
-/// Returns two squared distances between the measurement of a failed plane and its prediction,
+/// Two squared distances between the measurement of a failed plane and its prediction,
 /// without the part due to noise. The first squared distance weights all frequencies equally; the
 /// second weights frequencies as the test does, which favours frequencies with less noise. The
 /// noise of another tracer is distributed differently over frequencies. The other tracer must
@@ -167,7 +168,7 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// Returns a plane whose photons, backward rays and prediction come from lights with the
+    /// A plane whose photons, backward rays and prediction come from lights with the
     /// given radiances.
     fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
         let of = |radiance| scene(radiance);
@@ -189,7 +190,7 @@ mod tests {
         (case, compared)
     }
 
-    /// Returns the findings for a plane with the given radiances.
+    /// The findings for a plane with the given radiances.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();

@@ -44,7 +44,7 @@ impl Judge {
         Ok(judges)
     }
 
-    /// Returns the independent measurement of a plane of the scene, and the index of the plane in
+    /// The independent measurement of a plane of the scene, and the index of the plane in
     /// this measurement.
     pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
         all.iter().find_map(|judge| {

@@ -43,7 +43,7 @@ impl Judged {
     }
 }
 
-/// Returns the comparison of each plane, with its verdict.
+/// The comparison of each plane, with its verdict.
 pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
     let compared = |(i, prediction)| {
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)

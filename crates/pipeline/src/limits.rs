@@ -52,7 +52,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     }
 }
 
-/// Returns a number of threads in words.
+/// A number of threads in words.
 #[must_use]
 pub fn counted(threads: usize) -> String {
     format!("{threads} thread{}", if threads == 1 { "" } else { "s" })

@@ -24,7 +24,7 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Returns a scene file that the command line names.
+    /// A scene file that the command line names.
     #[must_use]
     pub fn file(path: &Path, set: &[(String, String)]) -> Self {
         Self {
@@ -36,17 +36,17 @@ impl SceneSource {
         }
     }
 
-    /// Returns the folder of the scene's meshes and pictures.
+    /// The folder of the scene's meshes and pictures.
     fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// Returns the name of the scene, which is the file name without its extension.
+    /// The name of the scene, which is the file name without its extension.
     fn name(&self) -> Cow<'_, str> {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// Returns the name of the scene for messages: the path of the scene file, or the name of the
+    /// The name of the scene for messages: the path of the scene file, or the name of the
     /// scene if there is no file.
     fn shown(&self) -> String {
         match self.text {
@@ -55,7 +55,7 @@ impl SceneSource {
         }
     }
 
-    /// Returns the given text or, if no text is given, the content of the scene file.
+    /// The given text or, if no text is given, the content of the scene file.
     fn read(&self) -> Result<Cow<'_, str>, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.into());
@@ -104,7 +104,7 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     })
 }
 
-/// Returns the scene file, if there is one, and all files that it names.
+/// The scene file, if there is one, and all files that it names.
 pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     let file = source.text.is_none().then(|| source.path.clone());
     let named = scene.inputs.keys().map(|name| source.folder().join(name));

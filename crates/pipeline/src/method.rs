@@ -5,7 +5,7 @@ use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
 use etendue_trace::{AllLights, Backward, Tracer, finds};
 
-/// Returns the source of photons that `method` sends through a scene.
+/// The source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
     if !scene.other_lights.is_empty() {
         return Ok(match method {
@@ -29,7 +29,7 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     }
 }
 
-/// Returns the method against which a measurement by `method` is tested at a plane. The returned
+/// The method against which a measurement by `method` is tested at a plane. The returned
 /// method is as independent of `method` as the scene allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
@@ -47,7 +47,7 @@ fn finds_all(scene: &Scene, plane: &VirtualPlane) -> bool {
     })
 }
 
-/// Returns the text that describes the prediction of a plane without theory: rays traced by
+/// The text that describes the prediction of a plane without theory: rays traced by
 /// `method` serve as the prediction.
 pub fn step(method: Method) -> String {
     let shared = match method {

@@ -27,7 +27,7 @@ pub enum Save {
 }
 
 impl Save {
-    /// Returns the name of the data in commands.
+    /// The name of the data in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -43,7 +43,7 @@ impl Save {
 /// The index of a plane's NPY file.
 const INDEX: &str = "photons.json";
 
-/// Returns the file names of a plane.
+/// The file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
     let name = file_of(save).map(|(name, _)| name);
@@ -91,6 +91,7 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
             let mut content = match save {
                 Save::Mcpl => Content::mcpl(&rays, rows),
                 Save::Tm25 => {
+                    // The header states the flux of all rays, so it is known only after a trace of its own.
                     let mut flux = 0.0;
                     trace(case, &*source, plane, &mut |crossings| {
                         flux += crossings.iter().map(|c| rays.watts(c)).sum::<f64>();

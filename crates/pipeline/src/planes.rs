@@ -3,7 +3,7 @@
 use etendue_scene::Scene;
 use etendue_store::{ArgumentStyle, Failure};
 
-/// Returns the index of the plane with the name that the argument `plane` gives.
+/// The index of the plane with the name that the argument `plane` gives.
 pub fn named(scene: &Scene, name: &str, arguments: ArgumentStyle) -> Result<usize, Failure> {
     let index = scene.planes.iter().position(|plane| plane.name == name);
     index.ok_or_else(|| {
@@ -15,7 +15,7 @@ pub fn named(scene: &Scene, name: &str, arguments: ArgumentStyle) -> Result<usiz
     })
 }
 
-/// Returns the index of the plane with this name. If no name is given, it is the only plane of the
+/// The index of the plane with this name. If no name is given, it is the only plane of the
 /// scene.
 pub fn chosen(
     scene: &Scene,
@@ -33,7 +33,7 @@ pub fn chosen(
     }
 }
 
-/// Returns the names of all planes.
+/// The names of all planes.
 fn names(scene: &Scene) -> String {
     let all: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
     all.join(", ")

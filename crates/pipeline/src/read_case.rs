@@ -83,7 +83,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
     Ok(all)
 }
 
-/// Returns the numbers of the missing batches, written as ranges.
+/// The numbers of the missing batches, written as ranges.
 fn missing(measurement: &Measurement, all: u32) -> String {
     let mut ranges: Vec<Range<u32>> = Vec::new();
     for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {

@@ -61,7 +61,7 @@ impl Run {
         Self::of(scene, method, inputs)
     }
 
-    /// Returns the run of a resolved scene; `inputs` are the files from which the scene was read.
+    /// The run of a resolved scene; `inputs` are the files from which the scene was read.
     pub fn of(scene: Scene, method: Method, inputs: Vec<PathBuf>) -> Result<Self, Failure> {
         method::check(&scene, method)?;
         Ok(Self {
@@ -72,7 +72,7 @@ impl Run {
         })
     }
 
-    /// Returns the scene with its measurement and predictions.
+    /// The scene with its measurement and predictions.
     #[must_use]
     pub fn with(self, measurement: Measurement, predictions: Vec<Prediction>) -> MeasuredScene {
         MeasuredScene {
@@ -103,7 +103,7 @@ impl Run {
         }
     }
 
-    /// Returns the scene with its measurement and predictions. No batches are stored.
+    /// The scene with its measurement and predictions. No batches are stored.
     ///
     /// # Errors
     /// When the method of measurement finds no light.
@@ -114,7 +114,7 @@ impl Run {
         Ok(self.with(measurement, predictions))
     }
 
-    /// Returns the format in which batches are sent to another process.
+    /// The format in which batches are sent to another process.
     #[must_use]
     pub fn packing(&self) -> Packing<'_> {
         Packing {
@@ -123,7 +123,7 @@ impl Run {
         }
     }
 
-    /// Returns the prediction of a plane to which a theory applies, as bytes for another process.
+    /// The prediction of a plane to which a theory applies, as bytes for another process.
     pub fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
         let number = plane as usize;
         let found = self.scene.planes.get(number).zip(self.theories.get(number));
@@ -168,6 +168,7 @@ impl Run {
         let (referred, told): (Vec<u32>, Vec<u32>) =
             (0..).zip(theories).map(|(i, _)| i).partition(is_referred);
         let referred: Vec<usize> = referred.into_iter().map(|i| i as usize).collect();
+        // One measurement by the other method serves all planes without theory.
         let judges = Judge::all(scene, &referred, self.method, reporter)?;
         let bar = reporter.begin(Work::Steps {
             verb: "predicting",

@@ -59,7 +59,7 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// Returns the settings that determine the arrays of the result.
+    /// The settings that determine the arrays of the result.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,
@@ -70,7 +70,7 @@ impl Summary {
         })
     }
 
-    /// Returns the summary of the compared planes.
+    /// The summary of the compared planes.
     pub fn new(case: &MeasuredScene, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
         let MeasuredScene {
             scene,
@@ -101,7 +101,7 @@ impl Summary {
         }
     }
 
-    /// Returns the bytes of `summary.json`; `files` maps each result file to its BLAKE3 hash.
+    /// The bytes of `summary.json`; `files` maps each result file to its BLAKE3 hash.
     pub fn json(&self, files: &BTreeMap<String, String>) -> Vec<u8> {
         #[derive(Serialize)]
         struct WithFiles<'a> {

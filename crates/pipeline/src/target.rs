@@ -73,7 +73,7 @@ pub(crate) fn reached(
     }
 }
 
-/// Returns the name of the plane with the most noise among planes with light, and its noise as a
+/// The name of the plane with the most noise among planes with light, and its noise as a
 /// share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();

@@ -119,7 +119,7 @@ impl Applicability {
         }
     }
 
-    /// Returns the theory of each light that may reach a plane, with the scene of this light, its
+    /// The theory of each light that may reach a plane, with the scene of this light, its
     /// plane, and its number, which counts from 1.
     pub fn of_lights<'a>(
         &'a self,
@@ -134,7 +134,7 @@ impl Applicability {
         std::iter::once((scene, plane, self, 1)).chain(others)
     }
 
-    /// Returns the kind of prediction.
+    /// The kind of prediction.
     #[must_use]
     pub fn class(&self) -> Class {
         let mut others = self.others.iter().flatten();
@@ -148,7 +148,7 @@ impl Applicability {
         }
     }
 
-    /// Returns the chain of affine maps that leads to a plane behind specular surfaces. The chain
+    /// The chain of affine maps that leads to a plane behind specular surfaces. The chain
     /// uses the paper's printed formulas where the scene asks for these formulas.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {

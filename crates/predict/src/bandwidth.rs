@@ -10,7 +10,7 @@ use etendue_spectrum::bandwidth::Along;
 use etendue_theory::shading::Criterion;
 use etendue_theory::{Model, PathKind, path};
 
-/// Returns the criterion for a plane behind a surface with a BRDF, perpendicular to the ray that
+/// The criterion for a plane behind a surface with a BRDF, perpendicular to the ray that
 /// leaves this surface. Returns `None` for any other plane. The share
 /// [`BANDWIDTH_FRACTION`](etendue_spectrum::bandwidth::BANDWIDTH_FRACTION) of a lobe's energy lies below its cutoff.
 ///
@@ -48,13 +48,13 @@ pub fn criterion(
     })
 }
 
-/// Returns the largest cutoff of the lobes of a sum; 0 if all lobes are centred on the normal.
+/// The largest cutoff of the lobes of a sum; 0 if all lobes are centred on the normal.
 fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     let lobes = reflectance.terms.iter().map(|term| term.brdf.lobe);
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
-/// Returns the bandwidth along ν that the exact prediction has at a plane with a [`criterion`]. The
+/// The bandwidth along ν that the exact prediction has at a plane with a [`criterion`]. The
 /// bandwidth of photons is computed by the same estimator.
 #[must_use]
 pub fn exact_bandwidth(

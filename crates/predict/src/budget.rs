@@ -15,7 +15,7 @@ const SHARE: f64 = 0.25;
 /// The largest number of rays for runs with few photons.
 const FEWEST: f64 = 3e5;
 
-/// Returns the ray budget of a prediction. The prediction ends when its error is half of the
+/// The ray budget of a prediction. The prediction ends when its error is half of the
 /// photons' noise. It also ends when it has taken about as long as the photons take. An error of
 /// half the noise raises the smallest detectable change by 12 %. The lights of the scene share the
 /// budget, and its planes share the time for closed forms.

@@ -4,7 +4,7 @@ use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
-/// Returns the chain that leads from the light to a virtual plane. The chain contains travels,
+/// The chain that leads from the light to a virtual plane. The chain contains travels,
 /// visibilities and diffuse reflections in the order of the central ray. It omits everything else
 /// on the way, which [`Applicability`](crate::Applicability) reports.
 #[must_use]
@@ -51,7 +51,7 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Returns the names, distances and masks of the objects across the path. These objects include
+/// The names, distances and masks of the objects across the path. These objects include
 /// surfaces beside the central ray, because such surfaces also stop light.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();

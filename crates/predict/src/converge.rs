@@ -125,7 +125,7 @@ pub fn converge_to(
     })
 }
 
-/// Returns the error of a first-order chain behind specular surfaces at the scale e, and the floor
+/// The error of a first-order chain behind specular surfaces at the scale e, and the floor
 /// of this error.
 fn by_rays(
     scene: &Scene,
@@ -149,7 +149,7 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// Returns the error of the chain where surfaces scatter, and the floor of this error. The same
+/// The error of the chain where surfaces scatter, and the floor of this error. The same
 /// paths give the exact sum and the sum of the chain.
 fn by_paths(
     whole: &Observed,
@@ -186,7 +186,7 @@ fn are_beside_peaks(view: &Observed) -> Option<bool> {
     Some(angles.any(|angle| angle > PEAK))
 }
 
-/// Returns the size of a mean over nets relative to the exact slices, and its floor.
+/// The size of a mean over nets relative to the exact slices, and its floor.
 fn of_nets(difference: &NetMean, exact: &Slices) -> [f64; 2] {
     let mut linear = exact.clone();
     linear.half += &difference.slices.half;
@@ -200,7 +200,7 @@ fn of_nets(difference: &NetMean, exact: &Slices) -> [f64; 2] {
     [power.max(0.0).sqrt(), NOISE_LEFT * noise]
 }
 
-/// Returns the slope of ln error over ln e.
+/// The slope of ln error over ln e.
 fn order(steps: &[ConvergenceStep]) -> f64 {
     let logs = steps.iter().map(|step| [step.share, step.error]);
     let logs: Vec<[f64; 2]> = logs.map(|pair| pair.map(libm::log)).collect();

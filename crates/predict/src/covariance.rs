@@ -78,7 +78,7 @@ pub struct TracedPlane {
 }
 
 impl TracedPlane {
-    /// Returns the covariance that is traced to a plane. The last step is the window.
+    /// The covariance that is traced to a plane. The last step is the window.
     ///
     /// # Errors
     /// Returns the reason if covariance tracing gives no result.
@@ -96,7 +96,7 @@ impl TracedPlane {
         })
     }
 
-    /// Returns the moments of the Gaussian over a band.
+    /// The moments of the Gaussian over a band.
     fn in_band(&self, moments: &Moments) -> Option<Matrix<4>> {
         let field = self.field.as_ref()?;
         moments
@@ -104,7 +104,7 @@ impl TracedPlane {
             .covariance()
     }
 
-    /// Returns the power of the Gaussian at the frequencies of a slice.
+    /// The power of the Gaussian at the frequencies of a slice.
     fn on_slice(&self, grid: &SliceGrid) -> Option<Array2<f64>> {
         let field = self.field.as_ref()?;
         let shape = (grid.rho.count(), grid.nu.count());
@@ -115,7 +115,7 @@ impl TracedPlane {
 }
 
 impl CovarianceReport {
-    /// Returns the covariances of plane `index` of a measurement, whose light field was also
+    /// The covariances of plane `index` of a measurement, whose light field was also
     /// measured on the grid `grid`.
     ///
     /// # Errors
@@ -221,7 +221,7 @@ fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     shares.fold(0.0, f64::max)
 }
 
-/// Returns the covariance of the exact spectrum if theory gives the spectrum at any frequency in
+/// The covariance of the exact spectrum if theory gives the spectrum at any frequency in
 /// closed form.
 fn exact(
     applicability: &Applicability,
@@ -245,7 +245,7 @@ fn exact(
     }))
 }
 
-/// Returns the moments of the slice at azimuth 0.
+/// The moments of the slice at azimuth 0.
 fn slice(
     measurement: &Measurement,
     index: usize,
@@ -270,7 +270,7 @@ fn slice(
     }))
 }
 
-/// Returns |F|² of theory at azimuth 0, [ρ, ν]. The power is computed from pairs of replicates, as
+/// |F|² of theory at azimuth 0, [ρ, ν]. The power is computed from pairs of replicates, as
 /// a measured power is computed from pairs of batches. Returns `None` where the measurement of
 /// another tracer replaces theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {

@@ -7,7 +7,7 @@ use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
 
-/// Returns the shortest and the longest distance, in metres, from a plane of the first leg back to
+/// The shortest and the longest distance, in metres, from a plane of the first leg back to
 /// the occluders of its light. Returns `None` if there are no occluders, for planes of later legs,
 /// and for planes on surfaces.
 ///
@@ -36,7 +36,7 @@ pub(crate) fn depth(scene: &Scene, plane: &VirtualPlane) -> Option<[f64; 2]> {
     Some([plane.distance - all[1], plane.distance - all[0]])
 }
 
-/// Returns the smallest and the largest distance along the first leg of points before the plane.
+/// The smallest and the largest distance along the first leg of points before the plane.
 fn extent(points: &[DVec3], end: f64) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(0.0, f64::max);

@@ -12,7 +12,7 @@ use etendue_theory::{Chain, Harmonics, Model, RayNets};
 use ndarray::Array4;
 use rayon::prelude::*;
 
-/// Returns the prediction of theory for a plane, either in closed form or by nets of rays in
+/// The prediction of theory for a plane, either in closed form or by nets of rays in
 /// `groups` groups. Returns `None` if no theory applies, if no ray arrives, or if the scene has
 /// several lights.
 #[must_use]
@@ -65,7 +65,7 @@ pub fn predict_field(
 /// which consists of many rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
-/// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
+/// The closed form between parallel planes. Returns `None` behind a receiver, for the rays
 /// of a file, and where the closed form would take too long.
 fn closed_form(
     chain: &Chain,
@@ -87,7 +87,7 @@ fn closed_form(
     })
 }
 
-/// Returns the spectrum itself, without the effects of the grid.
+/// The spectrum itself, without the effects of the grid.
 fn alias_free(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -100,7 +100,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at the frequencies of a grid. Along v, the frequencies start at zero.
+/// The spectrum at the frequencies of a grid. Along v, the frequencies start at zero.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

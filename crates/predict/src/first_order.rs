@@ -9,7 +9,7 @@ use etendue_theory::path::{self, PathSystem, rays};
 use etendue_theory::{Observed, Over, PathKind, Predicted, RayBudget};
 use std::f64::consts::{PI, TAU};
 
-/// Returns the chain along a path, if the central ray arrives.
+/// The chain along a path, if the central ray arrives.
 pub(crate) fn first_order(
     scene: &Scene,
     view: &Observed,
@@ -62,7 +62,7 @@ fn of_specular(
     })
 }
 
-/// Returns the chain for light that surfaces scatter. `defect` is the defect of the chain, and
+/// The chain for light that surfaces scatter. `defect` is the defect of the chain, and
 /// `matrix` is its matrix for rays along the mirror directions. The noise of the chain is the
 /// noise of the exact prediction, because the difference between the chain and the exact
 /// prediction has little noise.
@@ -89,7 +89,7 @@ fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Fi
     })
 }
 
-/// Returns the covariance of a Gaussian that starts as wide as the light, after it has passed the
+/// The covariance of a Gaussian that starts as wide as the light, after it has passed the
 /// chain and the window. Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹
 /// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment, which has no width.
 fn propagated(system: &PathSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
@@ -124,7 +124,7 @@ fn propagated(system: &PathSystem, chain: &Matrix<4>, window: &Window) -> Option
     Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
-/// Returns the variance of the Gaussian that has the curvature of the profile at the centre. For a
+/// The variance of the Gaussian that has the curvature of the profile at the centre. For a
 /// box, returns the variance of the box.
 fn variance(profile: &Profile) -> f64 {
     match *profile {

@@ -3,13 +3,13 @@
 use etendue_compare::{TESTS, Test, sidak};
 use etendue_scene::Scene;
 
-/// Returns the test of a scene, with the level α for all tests of its planes together.
+/// The test of a scene, with the level α for all tests of its planes together.
 #[must_use]
 pub fn test_of(scene: &Scene) -> Test {
     test_each(scene, TESTS)
 }
 
-/// Returns the test of a scene in which each plane is tested `times` times, with the level α for all
+/// The test of a scene in which each plane is tested `times` times, with the level α for all
 /// tests together.
 #[must_use]
 pub fn test_each(scene: &Scene, times: usize) -> Test {

@@ -40,7 +40,7 @@ const TRIANGLE: f64 = 150.0;
 const NORMALS: f64 = 72.0;
 
 impl Memory {
-    /// Returns the memory of a run of a scene on `threads` threads. `theories` are the theories of
+    /// The memory of a run of a scene on `threads` threads. `theories` are the theories of
     /// the scene's planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
@@ -89,7 +89,7 @@ impl Memory {
         }
     }
 
-    /// Returns the sum of the parts.
+    /// The sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         let Self {
@@ -104,7 +104,7 @@ impl Memory {
     }
 }
 
-/// Returns the sum of the largest `count` numbers.
+/// The sum of the largest `count` numbers.
 fn largest(count: usize, mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(|a, b| b.total_cmp(a));
     numbers.iter().take(count).sum()
@@ -114,7 +114,7 @@ fn is_reference(applicability: &Applicability) -> bool {
     matches!(applicability.theory, Theory::None)
 }
 
-/// Returns the number of different depths of lights.
+/// The number of different depths of lights.
 fn depths(scene: &Scene) -> usize {
     let moved = |other: &&Scene| other.path.frame != scene.path.frame;
     1 + scene.other_lights.iter().filter(moved).count()
@@ -133,7 +133,7 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// Returns the number of replicates that a prediction by nets holds, including the replicates of
+/// The number of replicates that a prediction by nets holds, including the replicates of
 /// its first-order chain.
 fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;

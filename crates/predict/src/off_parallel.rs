@@ -4,7 +4,7 @@ use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, Vi
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
-/// Returns the reasons why the theory does not apply to a plane, in words: oblique incidence, other
+/// The reasons why the theory does not apply to a plane, in words: oblique incidence, other
 /// objects in the way, or light that the theory does not cover. The list is empty where the theory
 /// applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
@@ -51,7 +51,7 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
 /// Angles below this many degrees count as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Returns the objects that light for the plane may meet: meshes, smooth surfaces, and flat objects
+/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat objects
 /// that do not lie across the path. Once a surface has reflected the light, flat objects across the
 /// path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
@@ -93,7 +93,7 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Returns the corners of rectangles. Together, they contain every part of a layer that light may
+/// The corners of rectangles. Together, they contain every part of a layer that light may
 /// meet on its way to a plane.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
     // A half-plane or a grating is infinite. Here it ends at a thousand times the extent of the
@@ -125,7 +125,7 @@ fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec
     }
 }
 
-/// Returns the half-widths of the regions where light for a plane leaves the source and where it
+/// The half-widths of the regions where light for a plane leaves the source and where it
 /// reaches each surface.
 fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
@@ -203,7 +203,7 @@ fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end:
     sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
 }
 
-/// Returns the surface whose edge lies within the view of a plane after a reflection. Theory
+/// The surface whose edge lies within the view of a plane after a reflection. Theory
 /// assumes that the surface is infinite.
 fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     let surface = reflector(scene, plane)?;
@@ -218,7 +218,7 @@ fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     (!covered).then_some(&surface.name)
 }
 
-/// Returns the flat surface that light leaves at the beginning of the leg of a plane.
+/// The flat surface that light leaves at the beginning of the leg of a plane.
 fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
     match scene.path.legs[plane.leg].leaves?.object {
         Object::Surface(i) => Some(&scene.surfaces[i]),

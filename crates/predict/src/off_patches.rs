@@ -61,7 +61,7 @@ struct Displaced {
     light: f64,
 }
 
-/// Returns the difference between light that smooth meshes deflect and light deflected by their
+/// The difference between light that smooth meshes deflect and light deflected by their
 /// patches; `None` without a mesh, or if no ray brings light into the window.
 pub(crate) fn off_patches(
     scene: &Scene,
@@ -108,7 +108,7 @@ pub(crate) fn off_patches(
 }
 
 impl Displaced {
-    /// Returns the distance between the two arrivals, in half-widths of the window along the axis
+    /// The distance between the two arrivals, in half-widths of the window along the axis
     /// where it is largest.
     fn apart(&self, plane: &VirtualPlane) -> f64 {
         let window = &plane.window;
@@ -122,7 +122,7 @@ impl Displaced {
     }
 }
 
-/// Returns how much the slices change when triangles deflect the rays instead of patches. The
+/// How much the slices change when triangles deflect the rays instead of patches. The
 /// result is the mean of the changes from two halves of the rays, plus its standard error, which is
 /// half of their difference.
 fn change(plane: &VirtualPlane, lit: &[Displaced]) -> f64 {
@@ -147,7 +147,7 @@ fn change(plane: &VirtualPlane, lit: &[Displaced]) -> f64 {
     norm(&a + &b) + norm(a - b)
 }
 
-/// Returns the arrival of a ray by the triangles of smooth meshes; `None` if the ray misses a mesh
+/// The arrival of a ray by the triangles of smooth meshes; `None` if the ray misses a mesh
 /// or meets a mesh again. `start` has the ray's position and slopes at the light.
 fn by_triangles(
     scene: &Scene,
@@ -211,7 +211,7 @@ fn by_triangles(
     Some(TwoPlane { x, y, u, v })
 }
 
-/// Returns the distances at which a ray meets triangles of a mesh, beyond a given distance, and the
+/// The distances at which a ray meets triangles of a mesh, beyond a given distance, and the
 /// triangles' numbers.
 fn hits(
     mesh: &MeshObject,
@@ -225,7 +225,7 @@ fn hits(
     met.filter(move |(t, _)| *t > from)
 }
 
-/// Returns the distance along a ray at which it meets a triangle (Möller and Trumbore 1997).
+/// The distance along a ray at which it meets a triangle (Möller and Trumbore 1997).
 fn met([a, b, c]: &[DVec3; 3], point: DVec3, direction: DVec3) -> Option<f64> {
     let [side, other, from] = [*b - *a, *c - *a, point - *a];
     let across = direction.cross(other);

@@ -14,7 +14,7 @@ use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::{Model, Over, Parameter, RayBudget};
 use ndarray::Array2;
 
-/// Returns the prediction of theory for a plane of a scene: the sum over all lights. Returns
+/// The prediction of theory for a plane of a scene: the sum over all lights. Returns
 /// darkness where no theory applies and [`predict_reference`] takes its place.
 #[must_use]
 pub fn predict(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Prediction {
@@ -29,7 +29,7 @@ pub fn predict(scene: &Scene, plane: &VirtualPlane, applicability: &Applicabilit
     Prediction { first_order, ..sum }
 }
 
-/// Returns the prediction of theory for each light that may reach a plane, with the number of
+/// The prediction of theory for each light that may reach a plane, with the number of
 /// the light, which begins at 1.
 pub fn predict_lights<'a>(
     scene: &'a Scene,
@@ -53,7 +53,7 @@ pub fn predict_lights<'a>(
     })
 }
 
-/// Returns the prediction for one light. `number` is the number of the light if there are
+/// The prediction for one light. `number` is the number of the light if there are
 /// others.
 fn of_light(
     (scene, plane, applicability): (&Scene, &VirtualPlane, &Applicability),
@@ -88,7 +88,7 @@ fn of_light(
 /// it changes less, the derivative is a rounding error.
 const MIN_CHANGE: f64 = 1e-6;
 
-/// Returns the prediction of a model, with the first-order chain beside it.
+/// The prediction of a model, with the first-order chain beside it.
 fn by<M: Model>(
     empty: Prediction,
     model: &M,
@@ -133,7 +133,7 @@ fn by<M: Model>(
     }
 }
 
-/// Returns a prediction in which no light arrives.
+/// A prediction in which no light arrives.
 fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Prediction {
     let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
     let values = Array2::zeros((grid.bins, grid.bins));
@@ -159,7 +159,7 @@ fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) 
     }
 }
 
-/// Returns a prediction that consists of another, independent measurement of plane `index`.
+/// A prediction that consists of another, independent measurement of plane `index`.
 /// Such a prediction is used where no theory applies.
 ///
 /// # Errors
@@ -180,7 +180,7 @@ pub fn predict_reference(
     })
 }
 
-/// Returns whether a parameter belongs to a light, and not to an object that all lights share.
+/// Whether a parameter belongs to a light, and not to an object that all lights share.
 /// `all` are the parameters of a model; the first travel begins at the light.
 fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
     match parameter {
@@ -196,7 +196,7 @@ fn is_of_light(parameter: Parameter, all: &[Parameter]) -> bool {
     }
 }
 
-/// Returns two cuts. The main lobe of the transform of a Hann window ends at the frequency
+/// Two cuts. The main lobe of the transform of a Hann window ends at the frequency
 /// 1/half-width. The first cut is twice this frequency. The second cut is 1.5 times the first, to
 /// show whether H depends on the cut. The list is empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {

@@ -12,7 +12,7 @@ const LEAST: f64 = 0.01;
 /// If a path has more objects around it, they are not measured, because each of them takes a sum.
 const MOST_OBJECTS: usize = 16;
 
-/// Returns the surfaces of the path, and the objects beside it, that stop light on its way to a
+/// The surfaces of the path, and the objects beside it, that stop light on its way to a
 /// plane, each with its share of the light in the window: of the light that would arrive without
 /// this object. The masks of the scene are not among them. The list is empty if the theory of a path
 /// does not apply.

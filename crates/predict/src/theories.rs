@@ -22,14 +22,14 @@ pub enum Theory {
 }
 
 impl Theory {
-    /// Returns the theory that covers the objects on the central ray. Its assumptions are not checked
+    /// The theory that covers the objects on the central ray. Its assumptions are not checked
     /// here.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
         Self::first(scene, plane, path(scene, plane).as_ref())
     }
 
-    /// Returns the theory that is tried first: for a path over smooth surfaces the theory of this
+    /// The theory that is tried first: for a path over smooth surfaces the theory of this
     /// path, and otherwise the theory of parallel planes. `view` is the path to the plane, if it
     /// has a theory.
     pub(crate) fn first(scene: &Scene, plane: &VirtualPlane, view: Option<&Observed>) -> Self {
@@ -45,7 +45,7 @@ impl Theory {
         }
     }
 
-    /// Returns the path of the theory, if it has one.
+    /// The path of the theory, if it has one.
     #[must_use]
     pub fn path(&self) -> Option<&Observed> {
         match self {
@@ -54,13 +54,13 @@ impl Theory {
         }
     }
 
-    /// Returns the path of the theory if its rays are sampled in the given way.
+    /// The path of the theory if its rays are sampled in the given way.
     #[must_use]
     pub fn path_of(&self, kind: PathKind) -> Option<&Observed> {
         self.path().filter(|view| view.kind() == kind)
     }
 
-    /// Returns the assumptions that the theory makes about a scene. Each assumption is checked
+    /// The assumptions that the theory makes about a scene. Each assumption is checked
     /// where the theory applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
@@ -73,7 +73,7 @@ impl Theory {
         }
     }
 
-    /// Returns the parameters of the theory's model that a measurement can estimate.
+    /// The parameters of the theory's model that a measurement can estimate.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
         match self {
             Self::Parallel(chain) => chain.parameters(),
@@ -82,7 +82,7 @@ impl Theory {
         }
     }
 
-    /// Returns the work of a prediction by the theory's model.
+    /// The work of a prediction by the theory's model.
     pub(crate) fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         match self {
             Self::Parallel(chain) => chain.work(over, budget),

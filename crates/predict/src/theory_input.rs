@@ -9,7 +9,7 @@ use etendue_theory::path::{
 };
 use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane};
 
-/// Returns a plane, the light, all masks and all surfaces of the path to it. Returns `None` where
+/// A plane, the light, all masks and all surfaces of the path to it. Returns `None` where
 /// light comes from a ray file, where too many surfaces have scattered the light, or where some
 /// surface has scattered it and another is a mesh. Also returns `None` if a mesh of the path that
 /// is met later has too many triangles.
@@ -70,7 +70,7 @@ pub fn path(scene: &Scene, plane: &VirtualPlane) -> Option<Observed> {
     })
 }
 
-/// Returns a surface of the path; `None` for a mesh.
+/// A surface of the path; `None` for a mesh.
 fn surface_of(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
     let (patch, extent, interaction) = match hit.object {
         Object::Patch(i) => {
@@ -110,7 +110,7 @@ fn surface_of(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
     })
 }
 
-/// Returns the patch that osculates a smooth mesh at the central ray's hit.
+/// The patch that osculates a smooth mesh at the central ray's hit.
 fn osculating(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
     let Object::Mesh(i) = hit.object else {
         return None;
@@ -127,7 +127,7 @@ fn osculating(scene: &Scene, hit: &Hit) -> Option<PathSurface> {
     })
 }
 
-/// Returns the event of a surface, rewritten as if the front of the surface faced the light. `back`
+/// The event of a surface, rewritten as if the front of the surface faced the light. `back`
 /// states whether the back of the surface faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
@@ -142,7 +142,7 @@ fn seen_from(event: Specular, back: bool) -> Specular {
     }
 }
 
-/// Returns the masks that light may cross before a plane, with their distances. Light that has not
+/// The masks that light may cross before a plane, with their distances. Light that has not
 /// met a surface crosses no mask behind a plane that is orthogonal to it.
 fn masks(scene: &Scene, plane: &VirtualPlane) -> Vec<PathMask> {
     let is_straight = plane.leg == 0 && plane.orientation == Orientation::Orthogonal;
@@ -158,7 +158,7 @@ fn masks(scene: &Scene, plane: &VirtualPlane) -> Vec<PathMask> {
     masks
 }
 
-/// Returns a plane in the frame at the light.
+/// A plane in the frame at the light.
 fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     let hit = surface(scene, plane);
     let patch = match hit.map(|hit| hit.object) {
@@ -175,7 +175,7 @@ fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     }
 }
 
-/// Returns the edition of the formulas that a scene asks for.
+/// The edition of the formulas that a scene asks for.
 pub(crate) fn print(scene: &Scene) -> Edition {
     if scene.file.as_printed {
         Edition::Equations
@@ -184,7 +184,7 @@ pub(crate) fn print(scene: &Scene) -> Edition {
     }
 }
 
-/// Returns the hit on the surface that carries a plane.
+/// The hit on the surface that carries a plane.
 fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     match plane.side {
         Side::Before => scene.path.ends_at(plane.leg),
@@ -199,7 +199,7 @@ const MAX_TRIANGLES: usize = 500;
 /// The same limit for a mesh of the path, which rays rarely pass before they reach it.
 const MAX_VISITED_TRIANGLES: usize = 5000;
 
-/// Returns the objects that the path does not visit. They stop light.
+/// The objects that the path does not visit. They stop light.
 pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
     let patches = (0..scene.patches.len()).map(Object::Patch);
@@ -217,7 +217,7 @@ fn is_finer(scene: &Scene, object: Object, most: usize) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > most)
 }
 
-/// Returns the obstacles beside the path. Rays are tested against these obstacles.
+/// The obstacles beside the path. Rays are tested against these obstacles.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()

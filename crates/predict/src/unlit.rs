@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-12;
 /// A layer is assumed to have holes if its shapes leave more open parts than this number.
 const MOST_PARTS: usize = 4096;
 
-/// Returns the reason why no light reaches a plane, in words; `None` where light may reach the
+/// The reason why no light reaches a plane, in words; `None` where light may reach the
 /// plane.
 ///
 /// The rays of a section are points (position at the light, slope). Half-planes and holes cut the
@@ -127,7 +127,7 @@ fn is_black(scene: &Scene, object: Object) -> bool {
     }
 }
 
-/// Returns the edges across an axis beyond which a mask is opaque: the edges of half-planes, or the
+/// The edges across an axis beyond which a mask is opaque: the edges of half-planes, or the
 /// ends of the hole of an aperture. Each edge is given as a sign and a coordinate. The mask is open
 /// only where the sign times the coordinate less the edge is positive.
 fn ends(mask: &Mask, axis: usize) -> Vec<[f64; 2]> {
@@ -188,7 +188,7 @@ impl RaySection {
         }
     }
 
-    /// Returns twice the area, or the length of a degenerate polygon.
+    /// Twice the area, or the length of a degenerate polygon.
     fn measure(&self) -> f64 {
         let [positions, slopes] = [0, 1].map(|k| {
             let [low, high] = extent(self.0.iter().map(|corner| corner[k]));
@@ -204,7 +204,7 @@ impl RaySection {
             .abs()
     }
 
-    /// Returns the interval where the rays cross a plane at a distance from the light.
+    /// The interval where the rays cross a plane at a distance from the light.
     fn at(&self, distance: f64) -> [f64; 2] {
         extent(self.0.iter().map(|[s, u]| s + distance * u))
     }
@@ -247,7 +247,7 @@ fn covers(
     open.is_empty()
 }
 
-/// Returns the region of a plane that lines from the light to the first surface cross, if this
+/// The region of a plane that lines from the light to the first surface cross, if this
 /// surface is smooth.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
@@ -267,7 +267,7 @@ fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> 
     })
 }
 
-/// Returns the parts of a rectangle that a shape leaves uncovered.
+/// The parts of a rectangle that a shape leaves uncovered.
 fn without(part: &Extent, shape: &Shape) -> Vec<Extent> {
     let [[x0, x1], [y0, y1]] = *part;
     match shape {

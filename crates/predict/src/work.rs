@@ -56,7 +56,7 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// Returns the first plane whose prediction would not fit into a gigabyte, if there is one.
+/// The first plane whose prediction would not fit into a gigabyte, if there is one.
 /// Otherwise, if the predictions of a scene would take more than about ten minutes, returns the
 /// plane that takes most of the work. `theories` are the theories of the scene's planes.
 #[must_use]
@@ -93,7 +93,7 @@ const OF_AZIMUTH: f64 = 4e-8;
 const OF_PLANE: f64 = 0.3;
 const OF_FREQUENCY: f64 = 3e-7;
 
-/// Returns the approximate seconds that one core takes to trace the photons of a scene, the most
+/// The approximate seconds that one core takes to trace the photons of a scene, the most
 /// seconds that it takes for the predictions of the scene, and the approximate seconds that it
 /// takes to compare and draw the planes, with a second tracer where no theory applies.
 #[must_use]
@@ -116,7 +116,7 @@ pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 3] {
     [photons, 1e-9 * steps, compared + of_second_tracer]
 }
 
-/// Returns the work of the prediction of a plane.
+/// The work of the prediction of a plane.
 pub(crate) fn of(
     scene: &Scene,
     plane: &VirtualPlane,

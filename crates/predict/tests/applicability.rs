@@ -12,7 +12,7 @@ use etendue_theory::{Model, PathKind, RayBudget};
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
 
-/// Returns a scene with one plane, whose window has the given width in metres and slope.
+/// A scene with one plane, whose window has the given width in metres and slope.
 fn scene(light: &str, blockers: &str, surfaces: &str, visits: &str, at: &str, half: f64) -> Scene {
     let text = format!(
         r#"(
@@ -31,10 +31,10 @@ fn of(scene: &Scene) -> Applicability {
     Applicability::new(scene, &scene.planes[0])
 }
 
-/// Returns a path with the same light that is blind to some occluder.
+/// A path with the same light that is blind to some occluder.
 type Blind = fn(&mut PathSystem);
 
-/// Returns the share of the light in a window of a given width that an occluder stops: the share by
+/// The share of the light in a window of a given width that an occluder stops: the share by
 /// which the prediction grows if it is blind to this occluder.
 fn stops(blind: Blind, scene: &Scene) -> f64 {
     let applies = of(scene);

@@ -15,7 +15,7 @@ const FACING: DVec3 = DVec3::new(0.382_683_43, 0.0, -0.923_879_53);
 const HALF: f64 = 0.2;
 const SQUARE: &str = "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))";
 
-/// Returns a mirror that deflects the central ray, a disc in the plane z = 0.7 and a plane at 1.7 m.
+/// A mirror that deflects the central ray, a disc in the plane z = 0.7 and a plane at 1.7 m.
 fn scene([x, y]: [f64; 2], radius: f64) -> Scene {
     parsed(&format!(
         r#"(
@@ -38,7 +38,7 @@ fn parsed(text: &str) -> Scene {
     resolve("scene", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns the share of the window's light that an occluder stops, by two predictions with the same
+/// The share of the window's light that an occluder stops, by two predictions with the same
 /// rays. The second prediction is blind to the occluder.
 fn stopped(scene: &Scene, blind: fn(&mut PathSystem)) -> f64 {
     let found = Applicability::new(scene, &scene.planes[0]);
@@ -53,7 +53,7 @@ fn stopped(scene: &Scene, blind: fn(&mut PathSystem)) -> f64 {
     1.0 - seen / all
 }
 
-/// Returns four numbers between −½ and ½ that fill four axes uniformly. They are multiples of
+/// Four numbers between −½ and ½ that fill four axes uniformly. They are multiples of
 /// powers of the root of x⁵ = x + 1.
 fn spread(index: u32) -> [f64; 4] {
     [1.0, 2.0, 3.0, 4.0]
@@ -102,7 +102,7 @@ fn a_small_disc_in_light_that_a_mirror_has_turned() {
     }
 }
 
-/// Returns the mirror image of a point in a plane.
+/// The mirror image of a point in a plane.
 fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
     point - 2.0 * (point - on).dot(normal) * normal
 }

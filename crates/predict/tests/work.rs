@@ -21,7 +21,7 @@ fn scene_of(text: &str, folder: &Path) -> Scene {
     resolve("scene", file, folder, u64::MAX).unwrap()
 }
 
-/// Returns a scene of the repository with pieces of its text replaced.
+/// A scene of the repository with pieces of its text replaced.
 fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     let edited = edits.iter().fold(text(name), |text, (old, new)| {
         assert!(text.contains(old), "{name}: {old}");
@@ -30,7 +30,7 @@ fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     scene_of(&edited, &folder())
 }
 
-/// Returns a square light and a floor, with something between them.
+/// A square light and a floor, with something between them.
 fn below(layers: &str) -> Scene {
     let text = format!(
         r#"(
@@ -49,7 +49,7 @@ fn too_much(scene: &Scene) -> Option<TooMuchWork> {
     too_much_work(scene, &Applicability::of_planes(scene))
 }
 
-/// Returns the message for a scene whose predictions take too long.
+/// The message for a scene whose predictions take too long.
 fn refusal(scene: &Scene) -> String {
     too_much(scene).expect("too much work").to_string()
 }

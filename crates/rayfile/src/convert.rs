@@ -50,7 +50,7 @@ pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     Ok(Converted { bytes, notes })
 }
 
-/// Returns the parts of a file that a set of rays does not hold.
+/// The parts of a file that a set of rays does not hold.
 fn dropped(file: &RayFile) -> Vec<String> {
     let mut notes = Vec::new();
     let mut note = |there: bool, what: &str| {
@@ -114,7 +114,7 @@ fn note_unit(set: &RaySet, what: &str, notes: &mut Vec<String>) {
     }
 }
 
-/// Returns the rays as a TM-25 file, in f32.
+/// The rays as a TM-25 file, in f32.
 fn to_tm25(set: &RaySet, notes: &mut Vec<String>) -> Result<Tm25File, Fault> {
     let mut header = tm25::Tm25Header::default();
     let total = single(set.total_power());
@@ -176,7 +176,7 @@ fn single(value: f64) -> f32 {
     value as f32
 }
 
-/// Returns the rays as photons of an MCPL file, in f64.
+/// The rays as photons of an MCPL file, in f64.
 fn to_mcpl(set: &RaySet, notes: &mut Vec<String>) -> Result<McplFile, Fault> {
     let mut header = mcpl::McplHeader {
         universal_pdg: Some(mcpl::PHOTON),

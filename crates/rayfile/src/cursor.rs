@@ -15,17 +15,17 @@ impl<'a> ByteCursor<'a> {
         Self { bytes, at, little }
     }
 
-    /// Returns the offset of the next byte.
+    /// The offset of the next byte.
     pub(crate) fn at(&self) -> usize {
         self.at
     }
 
-    /// Returns the number of bytes that have not been read.
+    /// The number of bytes that have not been read.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len().saturating_sub(self.at)
     }
 
-    /// Returns the next bytes; `what` names them in an error message.
+    /// The next bytes; `what` names them in an error message.
     pub(crate) fn take(&mut self, length: usize, what: &str) -> Result<&'a [u8], Fault> {
         let found = self.at.checked_add(length);
         let found = found.and_then(|end| self.bytes.get(self.at..end));

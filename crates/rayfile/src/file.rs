@@ -30,7 +30,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns the format that belongs to the extension of a file name, in upper or lower case.
+    /// The format that belongs to the extension of a file name, in upper or lower case.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_lowercase();
@@ -88,7 +88,7 @@ impl RayFile {
         }
     }
 
-    /// Returns the rays of the file.
+    /// The rays of the file.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         match self {

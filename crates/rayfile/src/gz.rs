@@ -21,7 +21,7 @@ pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Returns the unpacked bytes of a file, or its bytes unchanged if it is not packed.
+/// The unpacked bytes of a file, or its bytes unchanged if it is not packed.
 ///
 /// # Errors
 /// When gzip cannot read the bytes, or the unpacked bytes are more than [`MOST_RATIO`] and

@@ -82,7 +82,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
     Ok(set)
 }
 
-/// Returns the offset of the data, and the numbers of rows and columns.
+/// The offset of the data, and the numbers of rows and columns.
 fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
     let refused = || {
         let message = "an NPY file of an array of f64 ('<f8') in C order, [rays, 7] or [rays, 8], is expected";

@@ -19,7 +19,7 @@ const PREAMBLE: usize = 10;
 const MAX_DICTIONARY: usize = 1024;
 
 impl NpyHeader {
-    /// Returns the header of an array in C order.
+    /// The header of an array in C order.
     #[must_use]
     pub fn new(descr: &str, shape: &[u64]) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl NpyHeader {
         }
     }
 
-    /// Returns the header in version 1.0, padded so that the data begin at a multiple of 64 bytes.
+    /// The header in version 1.0, padded so that the data begin at a multiple of 64 bytes.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let Self {
@@ -57,7 +57,7 @@ impl NpyHeader {
         header
     }
 
-    /// Returns the header at the beginning of a file, and the offset of its data. Returns `None`
+    /// The header at the beginning of a file, and the offset of its data. Returns `None`
     /// if the file has no header of a numeric array. NumPy allows any Python literal in a header,
     /// but this function reads only flat dictionaries.
     #[must_use]
@@ -113,7 +113,7 @@ impl NpyHeader {
     }
 }
 
-/// Returns the content of a quoted Python string. Returns `None` if the text is not such a string,
+/// The content of a quoted Python string. Returns `None` if the text is not such a string,
 /// or if the string contains an escape.
 fn unquoted(text: &str) -> Option<&str> {
     let text = text.trim();

@@ -16,7 +16,7 @@ pub enum PowerUnit {
 }
 
 impl PowerUnit {
-    /// Returns the symbol of the unit.
+    /// The symbol of the unit.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -59,7 +59,7 @@ pub struct RaySet {
 }
 
 impl RaySet {
-    /// Returns the number of rays.
+    /// The number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -71,13 +71,13 @@ impl RaySet {
         self.positions.is_empty()
     }
 
-    /// Returns the power of all rays, in the set's unit.
+    /// The power of all rays, in the set's unit.
     #[must_use]
     pub fn total_power(&self) -> f64 {
         self.powers.iter().sum()
     }
 
-    /// Returns the lower and the upper corner of the bounding box of the positions, in metres;
+    /// The lower and the upper corner of the bounding box of the positions, in metres;
     /// `None` if there are no rays.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
@@ -92,7 +92,7 @@ impl RaySet {
         Some(self.positions.iter().fold([first, first], grow))
     }
 
-    /// Returns the wavelength of a ray, in metres; `None` if it is unknown.
+    /// The wavelength of a ray, in metres; `None` if it is unknown.
     #[must_use]
     pub fn wavelength(&self, ray: usize) -> Option<f64> {
         let known = match &self.wavelengths {
@@ -104,12 +104,12 @@ impl RaySet {
     }
 }
 
-/// Returns the length of a vector.
+/// The length of a vector.
 pub(crate) fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// Returns the unit vector along a vector that is neither zero nor infinite.
+/// The unit vector along a vector that is neither zero nor infinite.
 pub(crate) fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = length(v);
     v.map(|c| c / length)

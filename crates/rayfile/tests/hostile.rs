@@ -40,7 +40,7 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// Returns a file with some changes: in a few bytes, in a few numbers, or in its length. Changes
+/// A file with some changes: in a few bytes, in a few numbers, or in its length. Changes
 /// are more frequent in the header than in rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
@@ -82,7 +82,7 @@ fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// Returns the peak address space of the process, bytes; only Linux reports it.
+/// The peak address space of the process, bytes; only Linux reports it.
 fn peak() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmPeak:"))?;

@@ -48,7 +48,7 @@ fn mcpl_2_in_big_endian_is_read_by_hand() {
     assert!((set.wavelength(0).unwrap() - 1_239.841_98e-9 / 1.98).abs() < 1e-13);
 }
 
-/// Returns a TM-25 file of one ray, byte by byte: radiant flux, one wavelength.
+/// A TM-25 file of one ray, byte by byte: radiant flux, one wavelength.
 fn tm25_by_hand() -> Vec<u8> {
     let mut bytes = b"TM25".to_vec();
     bytes.extend(2013_i32.to_le_bytes());

@@ -10,7 +10,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::CrossPower;
 use etendue_store::Failure;
 
-/// Returns the spectrum of plane number `index` at azimuth 0 with the ellipses of the spectrum's
+/// The spectrum of plane number `index` at azimuth 0 with the ellipses of the spectrum's
 /// second moments.
 pub fn drawn(scene: &Scene, found: &SceneCovariances, index: usize) -> Result<Figure, Failure> {
     let (plane, measurement) = (&scene.planes[index], &found.measurement);

@@ -9,7 +9,7 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// Returns the cut through X with the given planes. If the cut through Y differs from it, the
+/// The cut through X with the given planes. If the cut through Y differs from it, the
 /// result also contains the cut through Y. If the path turns, the result also contains a drawing to
 /// scale. The path is unfolded: each surface is cut in the frame of the light that arrives at it.
 pub(crate) fn cross_section<'a>(

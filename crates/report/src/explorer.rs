@@ -12,7 +12,7 @@ pub(crate) const NAME: &str = "explorer.html";
 /// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("explorer.html");
 
-/// Returns the part after `#` in the address at which the explorer shows a scene; `None` if the
+/// The part after `#` in the address at which the explorer shows a scene; `None` if the
 /// explorer does not support the scene.
 ///
 /// A scene is supported if the explorer, with its controls set to the numbers of the scene, saves
@@ -53,7 +53,7 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// Returns the scene with fixed values in some fields: the fields that may differ when the explorer
+/// The scene with fixed values in some fields: the fields that may differ when the explorer
 /// saves the scene.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
@@ -91,7 +91,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
     }
 }
 
-/// Returns the explorer's numbers for a scene. The function assumes that the explorer supports the
+/// The explorer's numbers for a scene. The function assumes that the explorer supports the
 /// scene.
 fn setup(file: &SceneFile) -> Option<Setup> {
     let mut setup = Setup::default();
@@ -136,7 +136,7 @@ fn place(surface: &SurfaceFile) -> [f64; 3] {
     }
 }
 
-/// Returns the number of a colour that has no hue; the explorer has no colours.
+/// The number of a colour that has no hue; the explorer has no colours.
 fn grey(color: ColorFile) -> Option<f64> {
     match color {
         ColorFile::Grey(number) => Some(number),

@@ -22,7 +22,7 @@ const MAX_PAGE_BYTES: u64 = 1 << 28;
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
-/// Returns the data of the run in a folder, exactly as the page holds them.
+/// The data of the run in a folder, exactly as the page holds them.
 pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
@@ -52,7 +52,7 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     Ok(data.to_owned())
 }
 
-/// Returns a page with the data of several runs. Each run has its data in JSON, and its folder
+/// A page with the data of several runs. Each run has its data in JSON, and its folder
 /// relative to the page.
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {

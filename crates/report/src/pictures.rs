@@ -42,7 +42,7 @@ pub const NAMES: [&str; 6] = [
 /// The picture files of the path, and the numbers behind them.
 pub const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// Returns the names of the two sides in the pictures of a plane. If no theory applies, the second
+/// The names of the two sides in the pictures of a plane. If no theory applies, the second
 /// side is a measurement by the other tracer.
 pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     match plane.report.class {
@@ -51,7 +51,7 @@ pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     }
 }
 
-/// Returns the pictures `primal` and `spectrum` of a plane. `made_from` describes their source, and
+/// The pictures `primal` and `spectrum` of a plane. `made_from` describes their source, and
 /// `sides` are the names of the two sides.
 pub fn plane(
     (made_from, sides): (&str, [&str; 2]),
@@ -70,7 +70,7 @@ pub fn plane(
     ])
 }
 
-/// Returns the light field of a plane.
+/// The light field of a plane.
 fn primal(
     (note, sides): (&str, [&str; 2]),
     prediction: &Prediction,
@@ -108,7 +108,7 @@ fn primal(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the radial spectrum of a plane. If the window determines the values between the
+/// The radial spectrum of a plane. If the window determines the values between the
 /// frequencies, the measured and the predicted spectrum are drawn without visible cells. The
 /// difference is drawn at the frequencies of the scene, and the stored numbers are at these
 /// frequencies too.
@@ -152,7 +152,7 @@ fn spectrum(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns a line that states from which run a picture was made.
+/// A line that states from which run a picture was made.
 pub fn made_from(summary: &Summary) -> String {
     format!(
         "{}, {} photons, seed {}{}",
@@ -199,7 +199,7 @@ impl PictureFiles {
         Ok(Self { name, png, figure })
     }
 
-    /// Returns the figure as SVG.
+    /// The figure as SVG.
     pub fn svg(&self) -> &str {
         &self.figure.svg
     }
@@ -213,12 +213,12 @@ impl PictureFiles {
     }
 }
 
-/// Returns the verdict on a plane and its reasons, in one line.
+/// The verdict on a plane and its reasons, in one line.
 pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// Returns the verdict and its reasons, in lines that are at most as wide as a picture.
+/// The verdict and its reasons, in lines that are at most as wide as a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);

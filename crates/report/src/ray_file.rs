@@ -11,7 +11,7 @@ use etendue_scene::shown;
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;
 
-/// Returns a description of the content of a ray file, line by line. `packed` states whether the
+/// A description of the content of a ray file, line by line. `packed` states whether the
 /// file is in gzip.
 #[must_use]
 pub fn description(file: &RayFile, packed: bool) -> Vec<String> {
@@ -169,7 +169,7 @@ fn of_mcpl(file: &McplFile) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// Returns a text from the file, on one line.
+/// A text from the file, on one line.
 fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes).replace('\n', " ");
     shown(&text, LONGEST)

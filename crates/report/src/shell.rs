@@ -1,6 +1,6 @@
 //! Formats commands as a user may type them.
 
-/// Returns a word, quoted for a shell.
+/// A word, quoted for a shell.
 pub fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=^,:+".contains(c);
     if word.chars().all(plain) {

@@ -5,7 +5,7 @@ use etendue_field::{brief, decimals, fixed, grouped, uncertain};
 use etendue_pipeline::Summary;
 use etendue_store::Failure;
 
-/// Returns the table of planes, the table of parameters, and the verdict, as printed by
+/// The table of planes, the table of parameters, and the verdict, as printed by
 /// `etendue run`.
 pub fn text(summary: &Summary) -> String {
     let ledger = summary
@@ -48,7 +48,7 @@ pub fn text(summary: &Summary) -> String {
     lines.join("\n")
 }
 
-/// Returns the message about a first-order chain that does not agree with the photons.
+/// The message about a first-order chain that does not agree with the photons.
 pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
     let name = &plane.name;
@@ -74,7 +74,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     }
 }
 
-/// Returns a table of the differences between measurement and prediction, plane by plane.
+/// A table of the differences between measurement and prediction, plane by plane.
 pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let mut header = vec![
         "plane",
@@ -114,7 +114,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
     below_header(&header, summary.planes.iter().map(row))
 }
 
-/// Returns the difference between the photons and the first-order chain, and the expected value of
+/// The difference between the photons and the first-order chain, and the expected value of
 /// this difference.
 pub fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
@@ -127,7 +127,7 @@ pub fn chain(plane: &PlaneReport) -> String {
 /// Errors below this limit, in per cent, are too small for the digits of [`percent`].
 const LEAST_ERROR: f64 = 5e-4;
 
-/// Returns the difference between the photons and the first-order chain, without the part due to
+/// The difference between the photons and the first-order chain, without the part due to
 /// noise. If its square is below two standard errors, the text is an upper bound.
 pub fn off_by(chain: &FirstOrderReport) -> String {
     let Some([square, error]) = chain.squared_excess() else {
@@ -145,7 +145,7 @@ pub fn off_by(chain: &FirstOrderReport) -> String {
     format!("< {}", percent(Some(most)))
 }
 
-/// Returns a table of the parameters of the chain, as measured by the photons.
+/// A table of the parameters of the chain, as measured by the photons.
 pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -171,7 +171,7 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     below_header(&header, rows)
 }
 
-/// Returns a table of the differences between measured and predicted full radial spectra, plane
+/// A table of the differences between measured and predicted full radial spectra, plane
 /// by plane.
 fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
@@ -198,7 +198,7 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     below_header(&header, rows)
 }
 
-/// Returns a name with its unit in brackets.
+/// A name with its unit in brackets.
 pub fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -207,7 +207,7 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// Returns the measured value of a parameter, and the smallest change of the parameter that the
+/// The measured value of a parameter, and the smallest change of the parameter that the
 /// photons can detect. This change is a share of the parameter, or has the parameter's unit if the
 /// parameter is zero or a position, which may be zero by chance. If the smallest detectable change is larger than
 /// the parameter, both texts are “–”. If the error of the value is larger than the value, only the
@@ -260,7 +260,7 @@ pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// Returns a table as CSV.
+/// A table as CSV.
 pub fn csv(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
@@ -269,7 +269,7 @@ pub fn csv(
     Ok(text.into_bytes())
 }
 
-/// Returns the rows of a table below its header.
+/// The rows of a table below its header.
 pub fn below_header(
     header: &[&str],
     rows: impl IntoIterator<Item = Vec<String>>,
@@ -278,7 +278,7 @@ pub fn below_header(
     std::iter::once(header).chain(rows).collect()
 }
 
-/// Returns a sentence with the verdict of a run and its reasons.
+/// A sentence with the verdict of a run and its reasons.
 pub fn verdict_text(summary: &Summary) -> String {
     let with = |verdict: Verdict| -> Vec<&PlaneReport> {
         let planes = summary.planes.iter();
@@ -321,13 +321,13 @@ pub fn verdict_text(summary: &Summary) -> String {
     }
 }
 
-/// Returns the reasons why planes are undecided, in a sentence.
+/// The reasons why planes are undecided, in a sentence.
 pub(crate) fn undecided<'a>(planes: impl Iterator<Item = (&'a String, String)>) -> String {
     let reasons = planes.map(|(name, reason)| format!("\n  {name}: {reason}"));
     format!("undecided:{}", reasons.collect::<String>())
 }
 
-/// Returns the predicted slope with the same number of digits as the measured slope.
+/// The predicted slope with the same number of digits as the measured slope.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
         (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),
@@ -335,7 +335,7 @@ fn predicted(plane: &PlaneReport) -> String {
     }
 }
 
-/// Returns a verdict as a word.
+/// A verdict as a word.
 pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "pass",
@@ -344,17 +344,17 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Returns a number with `digits` digits after the point, or `–` if there is no number.
+/// A number with `digits` digits after the point, or `–` if there is no number.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 
-/// Returns a share in per cent, or `–` if there is no share.
+/// A share in per cent, or `–` if there is no share.
 pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }
 
-/// Returns a name for display, with spaces in place of underscores.
+/// A name for display, with spaces in place of underscores.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }

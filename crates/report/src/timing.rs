@@ -29,12 +29,12 @@ impl Stopwatch {
         self.last = Instant::now();
     }
 
-    /// Returns the seconds that a stage took.
+    /// The seconds that a stage took.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         self.seconds.get(stage).copied()
     }
 
-    /// Returns the content of `timing.json`.
+    /// The content of `timing.json`.
     pub fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
         struct Timing<'a> {

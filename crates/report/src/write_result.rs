@@ -33,7 +33,7 @@ pub fn check_explorer(scene: &Scene, save: &[Save]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the files that a comparison of a scene writes.
+/// The files that a comparison of a scene writes.
 pub fn plan(
     scene: &Scene,
     save: &[Save],

@@ -84,7 +84,7 @@ impl RectangleCells {
         Self { edges }
     }
 
-    /// Returns ∫ f over each cell.
+    /// ∫ f over each cell.
     fn integrals(&self, f: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
         let [first, second] = &self.edges;
         let cells = first
@@ -102,7 +102,7 @@ impl RectangleCells {
         cells.map(integral).collect()
     }
 
-    /// Returns the cell of a point. If the point is beyond the outermost edges, returns the nearest
+    /// The cell of a point. If the point is beyond the outermost edges, returns the nearest
     /// cell.
     fn cell(&self, point: [f64; 2]) -> usize {
         let [i, j] = [0, 1].map(|axis| {
@@ -163,7 +163,7 @@ impl SphereCells {
         }
     }
 
-    /// Returns ∫ f dω over each cell.
+    /// ∫ f dω over each cell.
     pub fn integrals(&self, f: impl Fn(DVec3) -> f64) -> Vec<f64> {
         self.cells.integrals(self.unrolled(f))
     }
@@ -179,7 +179,7 @@ impl SphereCells {
         self.cells.compare(places, self.unrolled(density))
     }
 
-    /// Returns the angle of a direction to the pole, and its azimuth divided by 2π.
+    /// The angle of a direction to the pole, and its azimuth divided by 2π.
     fn place(&self, direction: DVec3) -> [f64; 2] {
         let local = self.pole.vector_to_local(direction);
         let turn = libm::atan2(local.y, local.x) / TAU;

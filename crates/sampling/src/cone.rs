@@ -19,7 +19,7 @@ impl Cone {
         fall: 2.0,
     };
 
-    /// Returns a cone around an axis. It contains the directions whose angle to the axis has at
+    /// A cone around an axis. It contains the directions whose angle to the axis has at
     /// least the given cosine. The axis has unit length.
     #[inline]
     #[must_use]
@@ -30,7 +30,7 @@ impl Cone {
         }
     }
 
-    /// Returns the cone of directions from an observer to a sphere. `way` is the vector from the
+    /// The cone of directions from an observer to a sphere. `way` is the vector from the
     /// observer to the centre of the sphere. Returns `None` if the observer is inside the sphere.
     #[inline]
     #[must_use]
@@ -44,7 +44,7 @@ impl Cone {
         })
     }
 
-    /// Returns the solid angle, whose inverse is the sampling density.
+    /// The solid angle, whose inverse is the sampling density.
     #[inline]
     #[must_use]
     pub fn solid_angle(&self) -> f64 {
@@ -58,7 +58,7 @@ impl Cone {
         about(self.axis, polar(a * self.fall, b))
     }
 
-    /// Returns the density of [`Self::sample`].
+    /// The density of [`Self::sample`].
     #[must_use]
     pub fn density(&self, direction: DVec3) -> f64 {
         if self.axis.dot(direction) >= 1.0 - self.fall {

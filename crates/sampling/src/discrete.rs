@@ -7,7 +7,7 @@ pub struct DiscreteDistribution {
 }
 
 impl DiscreteDistribution {
-    /// Returns a distribution with these weights, which must not be negative.
+    /// A distribution with these weights, which must not be negative.
     #[must_use]
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut sum = 0.0;
@@ -20,7 +20,7 @@ impl DiscreteDistribution {
         }
     }
 
-    /// Returns the sum of all weights.
+    /// The sum of all weights.
     #[inline]
     #[must_use]
     pub fn total(&self) -> f64 {

@@ -23,7 +23,7 @@ pub struct LatLongSampler {
 }
 
 impl LatLongSampler {
-    /// Returns the sampler of a picture.
+    /// The sampler of a picture.
     #[must_use]
     pub fn new(map: &Arc<LatLong>) -> Self {
         let raster = map.raster();
@@ -69,13 +69,13 @@ impl LatLongSampler {
         self.map.direction([column as f64 + 0.5 + tent(r[2]), down])
     }
 
-    /// Returns the density of [`Self::sample`].
+    /// The density of [`Self::sample`].
     #[must_use]
     pub fn density(&self, from: DVec3) -> f64 {
         self.radiance_and_density(from).1
     }
 
-    /// Returns the radiance from a direction, and the density of [`Self::sample`].
+    /// The radiance from a direction, and the density of [`Self::sample`].
     #[must_use]
     pub fn radiance_and_density(&self, from: DVec3) -> (f64, f64) {
         let raster = self.map.raster();

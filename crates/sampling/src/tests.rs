@@ -41,7 +41,7 @@ fn on_sphere(
     cells.compare(directions.into_iter().map(Some), density)
 }
 
-/// Returns the density 1/area within a shape.
+/// The density 1/area within a shape.
 fn evenly(area: f64, is_inside: impl Fn(DVec2) -> bool) -> impl Fn(DVec2) -> f64 {
     move |point| if is_inside(point) { 1.0 / area } else { 0.0 }
 }

@@ -36,14 +36,14 @@ pub fn cosine_hemisphere([a, b]: [f64; 2]) -> DVec3 {
     disc(1.0, [a, b]).extend((1.0 - a).sqrt())
 }
 
-/// Returns the density of [`cosine_hemisphere`], over the whole sphere.
+/// The density of [`cosine_hemisphere`], over the whole sphere.
 #[inline]
 #[must_use]
 pub fn cosine_hemisphere_density(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// Returns the direction at an angle θ to Z and an azimuth φ. `fall` is 1 − cos θ, which keeps its
+/// The direction at an angle θ to Z and an azimuth φ. `fall` is 1 − cos θ, which keeps its
 /// digits for small θ, and `turn` is φ/2π.
 #[inline]
 #[must_use]

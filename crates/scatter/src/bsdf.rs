@@ -4,10 +4,10 @@ use glam::DVec3;
 
 /// A BSDF at one point. wo is in front of the surface.
 pub trait Bsdf {
-    /// Returns the BSDF, sr⁻¹, without delta components.
+    /// The BSDF, sr⁻¹, without delta components.
     fn value(&self, wi: DVec3, wo: DVec3) -> f64;
 
-    /// Returns the density of [`Self::direction`] per solid angle of wi.
+    /// The density of [`Self::direction`] per solid angle of wi.
     fn density(&self, wi: DVec3, wo: DVec3) -> f64;
 
     /// Returns [`Self::value`] and [`Self::density`]; after inlining, they share their common terms.
@@ -19,7 +19,7 @@ pub trait Bsdf {
     /// Samples a direction wi; `None` if light is absorbed, or if a delta component was chosen.
     fn direction(&self, wo: DVec3, random: [f64; 3]) -> Option<DVec3>;
 
-    /// Returns the delta direction for the last of three random numbers; `None` if that number
+    /// The delta direction for the last of three random numbers; `None` if that number
     /// selects a non-delta component.
     #[inline]
     fn mirrored(&self, _wo: DVec3, _random: f64) -> Option<BsdfSample> {
@@ -54,7 +54,7 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
-    /// Returns a delta direction with its weight.
+    /// A delta direction with its weight.
     #[inline]
     #[must_use]
     pub fn only(wi: DVec3, weight: f64) -> Self {
@@ -66,13 +66,13 @@ impl BsdfSample {
     }
 }
 
-/// Returns a direction if it is in front of the surface.
+/// A direction if it is in front of the surface.
 #[inline]
 pub(crate) fn before(direction: DVec3) -> Option<DVec3> {
     (direction.z > 0.0).then_some(direction)
 }
 
-/// Returns a direction mirrored at a normal.
+/// A direction mirrored at a normal.
 #[inline]
 pub(crate) fn mirrored(direction: DVec3, normal: DVec3) -> DVec3 {
     2.0 * direction.dot(normal) * normal - direction

@@ -5,7 +5,7 @@ use crate::{Bsdf, BsdfSample, Microfacets, fresnel};
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the light that a smooth mirror reflects along wo, which is in front of it.
+/// The light that a smooth mirror reflects along wo, which is in front of it.
 #[inline]
 #[must_use]
 pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> BsdfSample {

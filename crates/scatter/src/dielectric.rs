@@ -63,7 +63,7 @@ struct Facet {
 }
 
 impl RoughDielectric {
-    /// Returns the facet at which wo is mirrored or refracted to wi (Walter et al., Eqs. 13 and
+    /// The facet at which wo is mirrored or refracted to wi (Walter et al., Eqs. 13 and
     /// 16). Returns `None` if this facet does not face the front.
     #[inline]
     fn facet(&self, wi: DVec3, wo: DVec3) -> Option<Facet> {

@@ -13,7 +13,7 @@ pub struct DiffuseTransmission {
 }
 
 impl DiffuseTransmission {
-    /// Returns the share of directions that are sampled in front of the surface.
+    /// The share of directions that are sampled in front of the surface.
     fn share(&self) -> f64 {
         let sum = self.reflectance + self.transmittance;
         if sum > 0.0 {

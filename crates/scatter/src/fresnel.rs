@@ -4,7 +4,7 @@
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the reflected share of light at an angle of incidence, given by its cosine from 0 to
+/// The reflected share of light at an angle of incidence, given by its cosine from 0 to
 /// 1.
 #[inline]
 #[must_use]
@@ -16,7 +16,7 @@ pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
     }
 }
 
-/// Returns the reflectance of a dielectric. With an index below 1, all light beyond the critical
+/// The reflectance of a dielectric. With an index below 1, all light beyond the critical
 /// angle is reflected.
 #[inline]
 fn dielectric(index: f64, cosine: f64) -> f64 {
@@ -70,7 +70,7 @@ impl Interface {
         }
     }
 
-    /// Returns the direction behind the interface from which light is refracted to `wo` in front of
+    /// The direction behind the interface from which light is refracted to `wo` in front of
     /// the interface. `normal` is on the side of wo.
     #[inline]
     pub(crate) fn refracted(&self, wo: DVec3, normal: DVec3) -> DVec3 {
@@ -80,7 +80,7 @@ impl Interface {
     }
 }
 
-/// Returns the reflectance of a smooth interface for uniform light from all directions: 2 ∫ F(μ) μ
+/// The reflectance of a smooth interface for uniform light from all directions: 2 ∫ F(μ) μ
 /// dμ over (0, 1).
 ///
 /// Uses the midpoint rule in μ². With 10⁴ points, the error is less than 10⁻⁶ even if F has a kink.

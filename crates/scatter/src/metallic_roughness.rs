@@ -20,7 +20,7 @@ pub struct MetallicRoughness {
 }
 
 impl MetallicRoughness {
-    /// Returns the contribution of the base to the BRDF: Lambert's BRDF less the reflectance of the
+    /// The contribution of the base to the BRDF: Lambert's BRDF less the reflectance of the
     /// coat, at the angle between wo and the half vector.
     #[must_use]
     pub fn base_value(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -28,19 +28,19 @@ impl MetallicRoughness {
         self.base() * (1.0 - raised(self.coat, cosine)) * lambertian::VALUE
     }
 
-    /// Returns the albedo of the base times its share.
+    /// The albedo of the base times its share.
     #[must_use]
     pub fn base(&self) -> f64 {
         (1.0 - self.metallic) * self.color
     }
 
-    /// Returns the reflectance of the facets at an angle of this cosine.
+    /// The reflectance of the facets at an angle of this cosine.
     fn reflected(&self, cosine: f64) -> f64 {
         let metal = raised([self.color, 1.0], cosine);
         self.metallic * metal + (1.0 - self.metallic) * raised(self.coat, cosine)
     }
 
-    /// Returns the share of directions that the facets sample: approximately their share of the
+    /// The share of directions that the facets sample: approximately their share of the
     /// light.
     fn facet_share(&self, wo: DVec3) -> f64 {
         let facets = self.reflected(wo.z);
@@ -88,7 +88,7 @@ impl Bsdf for MetallicRoughness {
     }
 }
 
-/// Returns Schlick's reflectance, given its values at normal and at grazing incidence.
+/// Schlick's reflectance, given its values at normal and at grazing incidence.
 fn raised([normal, grazing]: [f64; 2], cosine: f64) -> f64 {
     normal + (grazing - normal) * schlick(cosine)
 }

@@ -31,7 +31,7 @@ impl Microfacets {
         }
     }
 
-    /// Returns the BRDF of perfect mirrors, for two directions in front of the surface (Walter et
+    /// The BRDF of perfect mirrors, for two directions in front of the surface (Walter et
     /// al., Eq. 20). Also returns the cosine of the angle of incidence on the mirrors, for a
     /// Fresnel factor.
     #[inline]
@@ -51,7 +51,7 @@ impl Microfacets {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// Returns the density of [`Self::sample`], over the whole sphere. The density of directions is the density of
+    /// The density of [`Self::sample`], over the whole sphere. The density of directions is the density of
     /// the normal, divided by 4 h · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
@@ -81,7 +81,7 @@ impl Microfacets {
         mirrored(wo, DVec3::new(x * cos, y * sin, 1.0).normalize())
     }
 
-    /// Returns the density of [`Self::sample_unmasked`], over the whole sphere. A normal that is
+    /// The density of [`Self::sample_unmasked`], over the whole sphere. A normal that is
     /// seen from behind reflects like its opposite.
     #[inline]
     #[must_use]
@@ -92,7 +92,7 @@ impl Microfacets {
         })
     }
 
-    /// Returns D, per steradian, of a normal of unit length of either sign (Walter et al., Eqs. 25
+    /// D, per steradian, of a normal of unit length of either sign (Walter et al., Eqs. 25
     /// and 33, with slopes divided by α along each axis).
     #[inline]
     pub(crate) fn d(&self, normal: DVec3) -> f64 {
@@ -106,7 +106,7 @@ impl Microfacets {
         }
     }
 
-    /// Returns Smith's G₁: among the normals that face a direction, the share of normals that are visible from this
+    /// Smith's G₁: among the normals that face a direction, the share of normals that are visible from this
     /// direction (Walter et al., Eqs. 26 f. and 34).
     #[inline]
     pub(crate) fn g1(&self, direction: DVec3) -> f64 {
@@ -151,7 +151,7 @@ impl Microfacets {
         (stretch * normal.with_z(normal.z.max(MIN_HEIGHT))).normalize()
     }
 
-    /// Returns the density of [`Self::sample_normal`] per solid angle of normals: D G₁ ωo · n / cos
+    /// The density of [`Self::sample_normal`] per solid angle of normals: D G₁ ωo · n / cos
     /// θo of GGX (Heitz 2018).
     #[inline]
     pub(crate) fn normal_density(&self, wo: DVec3, normal: DVec3) -> f64 {
@@ -162,7 +162,7 @@ impl Microfacets {
         ggx_g1(self.slope(wo)) * facing * self.ggx_d(normal) / wo.z
     }
 
-    /// Returns D of GGX with these roughnesses.
+    /// D of GGX with these roughnesses.
     #[inline]
     fn ggx_d(&self, normal: DVec3) -> f64 {
         let sum = self.spread(normal) + normal.z * normal.z;
@@ -185,7 +185,7 @@ impl Microfacets {
     }
 }
 
-/// Returns G₁ of GGX for a direction with this α tan θ.
+/// G₁ of GGX for a direction with this α tan θ.
 #[inline]
 fn ggx_g1(slope: f64) -> f64 {
     2.0 / (1.0 + (1.0 + slope * slope).sqrt())

@@ -57,7 +57,7 @@ pub struct ModifiedPhong {
 }
 
 impl ModifiedPhong {
-    /// Returns the share of directions that are sampled by the lobe, ks / (kd + ks). The other directions are sampled
+    /// The share of directions that are sampled by the lobe, ks / (kd + ks). The other directions are sampled
     /// in proportion to the cosine.
     #[inline]
     fn specular_share(&self) -> f64 {

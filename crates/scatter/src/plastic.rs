@@ -22,7 +22,7 @@ pub struct Coat {
 }
 
 impl Coat {
-    /// Returns a coat with this index relative to the outside; a smooth coat has no facets.
+    /// A coat with this index relative to the outside; a smooth coat has no facets.
     #[must_use]
     pub fn new(index: f64, facets: Option<Microfacets>) -> Self {
         let through = facets.map(|facets| {
@@ -42,13 +42,13 @@ impl Coat {
         }
     }
 
-    /// Returns the coat's microfacets; `None` if it is smooth.
+    /// The coat's microfacets; `None` if it is smooth.
     #[must_use]
     pub fn facets(&self) -> Option<&Microfacets> {
         self.facets.as_ref()
     }
 
-    /// Returns the transmittance at an angle of this cosine.
+    /// The transmittance at an angle of this cosine.
     #[inline]
     fn through(&self, cosine: f64) -> f64 {
         if self.facets.is_none() {
@@ -76,7 +76,7 @@ pub struct Plastic<'a> {
 }
 
 impl Plastic<'_> {
-    /// Returns the contribution of the base to the BRDF, with both directions in front of the
+    /// The contribution of the base to the BRDF, with both directions in front of the
     /// surface.
     #[inline]
     #[must_use]
@@ -85,7 +85,7 @@ impl Plastic<'_> {
         self.base_albedo() * through / (self.coat.index * self.coat.index) * lambertian::VALUE
     }
 
-    /// Returns the share of the light reaching the base that the base reflects. Repeated
+    /// The share of the light reaching the base that the base reflects. Repeated
     /// reflections by the coat are included.
     #[inline]
     #[must_use]
@@ -99,7 +99,7 @@ impl Plastic<'_> {
         self.diffuse / (1.0 - again)
     }
 
-    /// Returns the share of directions that are sampled by the coat: approximately its share of the
+    /// The share of directions that are sampled by the coat: approximately its share of the
     /// light.
     #[inline]
     fn coat_share(&self, wo: DVec3) -> f64 {
@@ -160,7 +160,7 @@ impl Bsdf for Plastic<'_> {
     }
 }
 
-/// Returns the transmittance of a rough interface at an angle of this cosine.
+/// The transmittance of a rough interface at an angle of this cosine.
 fn transmitted(facets: &Microfacets, index: f64, cosine: f64) -> f64 {
     /// Numbers of the inclinations and of the azimuths of normals.
     const INCLINATIONS: usize = 128;
@@ -181,7 +181,7 @@ fn transmitted(facets: &Microfacets, index: f64, cosine: f64) -> f64 {
     (0..INCLINATIONS * AZIMUTHS).map(one).sum::<f64>() / (INCLINATIONS * AZIMUTHS) as f64
 }
 
-/// Returns the reflectance of a rough interface for uniform light from all directions.
+/// The reflectance of a rough interface for uniform light from all directions.
 fn rough_reflectance(facets: &Microfacets, index: f64) -> f64 {
     /// Number of pairs of a direction and a normal.
     const COUNT: usize = 1 << 17;
@@ -203,7 +203,7 @@ fn at_cosine(cosine: f64) -> DVec3 {
     DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine)
 }
 
-/// Returns a normal for two numbers in 0 to 1, with a weight. The mean of a function over the
+/// A normal for two numbers in 0 to 1, with a weight. The mean of a function over the
 /// normals visible from wo is the mean of weight times function over the unit square.
 fn visible_normal(facets: &Microfacets, wo: DVec3, [a, b]: [f64; 2]) -> (DVec3, f64) {
     // Steep normals are few but matter, so 1 − (1 − a)³ is dense near 1.

@@ -40,7 +40,7 @@ pub struct Principled {
 }
 
 impl Principled {
-    /// Returns the contribution of the base to the BRDF. A rough base reflects more light back to
+    /// The contribution of the base to the BRDF. A rough base reflects more light back to
     /// where the light comes from, and a smooth base reflects less light at grazing angles (Burley
     /// 2012, section 5.3; Burley 2015, *Extending the Disney BRDF to a BSDF with integrated
     /// subsurface scattering*, section 3).
@@ -56,13 +56,13 @@ impl Principled {
         self.base() * shape * lambertian::VALUE
     }
 
-    /// Returns the albedo of the base times its share.
+    /// The albedo of the base times its share.
     #[must_use]
     pub fn base(&self) -> f64 {
         (1.0 - self.metallic) * (1.0 - self.transmission) * self.color
     }
 
-    /// Returns the same point as seen from the back.
+    /// The same point as seen from the back.
     #[must_use]
     pub fn inside(&self) -> PrincipledInside {
         PrincipledInside {
@@ -75,18 +75,18 @@ impl Principled {
         }
     }
 
-    /// Returns the share of the transmitting interface.
+    /// The share of the transmitting interface.
     fn through(&self) -> f64 {
         (1.0 - self.metallic) * self.transmission
     }
 
-    /// Returns the factor on transmitted light, whose square is the colour: light usually passes
+    /// The factor on transmitted light, whose square is the colour: light usually passes
     /// two surfaces of an object.
     fn tint_through(&self) -> f64 {
         self.color.max(0.0).sqrt()
     }
 
-    /// Returns the interface as seen from the front.
+    /// The interface as seen from the front.
     fn interface(&self) -> RoughDielectric {
         RoughDielectric {
             facets: self.facets,
@@ -94,7 +94,7 @@ impl Principled {
         }
     }
 
-    /// Returns the reflectance of the facets at an angle of this cosine. Schlick's approximation
+    /// The reflectance of the facets at an angle of this cosine. Schlick's approximation
     /// describes the metal, and Fresnel's equations the dielectric.
     fn reflected(&self, cosine: f64) -> f64 {
         let dielectric = Interface::new(self.index, cosine).reflected;
@@ -104,7 +104,7 @@ impl Principled {
             + (1.0 - self.metallic) * (dielectric + self.tint * (tinted - dielectric))
     }
 
-    /// Returns the BRDF of the clear coat, with the distribution GTR1 (Burley 2012, section 5.4).
+    /// The BRDF of the clear coat, with the distribution GTR1 (Burley 2012, section 5.4).
     fn coat_value(&self, wi: DVec3, wo: DVec3) -> f64 {
         /// The roughness of Smith's masking, whatever the roughness of the distribution is.
         const MASKING: f64 = 0.25;
@@ -114,7 +114,7 @@ impl Principled {
         0.25 * self.clearcoat * raised(0.04, normal.dot(wo)) * self.coat_d(normal) * masking
     }
 
-    /// Returns D of the clear coat's normals, per steradian.
+    /// D of the clear coat's normals, per steradian.
     fn coat_d(&self, normal: DVec3) -> f64 {
         let squared = self.coat_alpha * self.coat_alpha;
         let less = squared - 1.0;
@@ -138,7 +138,7 @@ impl Principled {
         self.coat_d(normal) * normal.z / (4.0 * normal.dot(wo))
     }
 
-    /// Returns the shares of directions that the facets, the clear coat and the transmitting
+    /// The shares of directions that the facets, the clear coat and the transmitting
     /// interface sample: approximately their shares of the light.
     fn shares(&self, wo: DVec3) -> [f64; 3] {
         let facets = self.reflected(wo.z);
@@ -238,7 +238,7 @@ impl Bsdf for PrincipledInside {
     }
 }
 
-/// Returns Schlick's reflectance for a reflectance at normal incidence.
+/// Schlick's reflectance for a reflectance at normal incidence.
 fn raised(normal: f64, cosine: f64) -> f64 {
     normal + (1.0 - normal) * schlick(cosine)
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
-    /// Returns the least-squares paraboloid through the vertices around a hit. The axes of the
+    /// The least-squares paraboloid through the vertices around a hit. The axes of the
     /// paraboloid's frame are the principal directions at the hit, its curvatures are the
     /// principal curvatures, and its normal is on the side from which the light comes. Returns
     /// `None` if there are too few vertices.
@@ -54,7 +54,7 @@ impl MeshObject {
         nearest.is_some_and(|i| self.normal(i, hit.point).dot(hit.normal) < 0.0)
     }
 
-    /// Returns the triangle whose centroid is nearest to a hit.
+    /// The triangle whose centroid is nearest to a hit.
     fn nearest(&self, hit: &Hit) -> Option<usize> {
         let distance = |i: &usize| {
             let middle: DVec3 = self.triangles[*i].iter().sum::<DVec3>() / 3.0;
@@ -75,7 +75,7 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
 }
 
-/// Returns the least-squares solution x of a · x = b over rows [a, b]. Returns `None` if the rows
+/// The least-squares solution x of a · x = b over rows [a, b]. Returns `None` if the rows
 /// do not determine x.
 fn least_squares<const N: usize, const M: usize>(
     rows: impl Iterator<Item = [f64; M]>,

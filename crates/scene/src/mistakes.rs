@@ -16,7 +16,7 @@ const NEAR: f64 = 10.0;
 /// rarely intended.
 const STEEP: f64 = 5.0;
 
-/// Returns a description of each likely mistake.
+/// A description of each likely mistake.
 pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     let planes = scene.file.planes.iter().zip(&scene.planes).enumerate();
     let mut told = BTreeSet::new();
@@ -173,7 +173,7 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// Returns the distances from the central ray to the edges of an array, along X and along Y. An
+/// The distances from the central ray to the edges of an array, along X and along Y. An
 /// edge of an array lies half a pitch beyond the centres of the outermost shapes, or at the ends
 /// of bars. Returns `None` for an array beside the central ray.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
@@ -195,7 +195,7 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     edges.iter().all(|edge| *edge > 0.0).then_some(edges)
 }
 
-/// Returns how far the light that a plane sees extends from the central ray, at a given distance
+/// How far the light that a plane sees extends from the central ray, at a given distance
 /// along the first leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;

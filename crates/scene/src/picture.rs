@@ -50,7 +50,7 @@ impl Samples {
         }
     }
 
-    /// Returns the memory that reading the values takes, in bytes. OpenEXR channels are copied.
+    /// The memory that reading the values takes, in bytes. OpenEXR channels are copied.
     fn bytes(&self) -> usize {
         match self {
             Self::Bytes(bytes) | Self::Words(bytes) => bytes.len(),
@@ -68,7 +68,7 @@ impl Samples {
         }
     }
 
-    /// Returns a value, which is a number or one of the `levels`.
+    /// A value, which is a number or one of the `levels`.
     #[inline]
     fn value(&self, index: usize, levels: &[f64]) -> f64 {
         match self {
@@ -89,7 +89,7 @@ impl Channels {
         self.count < 3
     }
 
-    /// Returns the picture as one number for each pixel, computed by `number` from red, green and
+    /// The picture as one number for each pixel, computed by `number` from red, green and
     /// blue. Levels from 0 to 1 become light by `curve`; other values are proportional to light.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ impl Channels {
         self.pixels(|at| number([value(at), value(at + others[0]), value(at + others[1])]))
     }
 
-    /// Returns the number that `number` computes from the alpha of each pixel, which is 1 in
+    /// The number that `number` computes from the alpha of each pixel, which is 1 in
     /// pictures without alpha.
     ///
     /// # Errors
@@ -119,7 +119,7 @@ impl Channels {
         })
     }
 
-    /// Returns the raster of a function of the position of each pixel's first value.
+    /// The raster of a function of the position of each pixel's first value.
     fn pixels(&self, number: impl Fn(usize) -> f64) -> Result<Raster, Fault> {
         let starts = (0..self.samples.len()).step_by(self.count.max(1));
         raster(self.width, self.height, starts.map(number).collect())
@@ -281,7 +281,7 @@ fn exr(bytes: &[u8], memory: u64) -> Result<Channels, Fault> {
     ))
 }
 
-/// Returns the number of values per pixel of a layer, and these values; `None` if the channels
+/// The number of values per pixel of a layer, and these values; `None` if the channels
 /// are missing.
 fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f32>)> {
     let channel = |name: &str| {

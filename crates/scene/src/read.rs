@@ -27,7 +27,7 @@ pub enum ReadError {
     },
 }
 
-/// Returns the bytes of a regular file that has at most `most` bytes.
+/// The bytes of a regular file that has at most `most` bytes.
 ///
 /// # Errors
 /// [`ReadError`], except [`ReadError::Outside`].
@@ -51,7 +51,7 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-/// Returns the bytes of the regular file `name`, which must be below `folder` after all links are
+/// The bytes of the regular file `name`, which must be below `folder` after all links are
 /// followed.
 ///
 /// # Errors

@@ -150,7 +150,7 @@ impl Resolver<'_> {
         Some(scene)
     }
 
-    /// Returns the bytes of a file named in the scene.
+    /// The bytes of a file named in the scene.
     fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
         match read_below(self.folder, name, INPUT_BYTES) {
             Ok(bytes) => {
@@ -248,7 +248,7 @@ impl PathStop<'_> {
     }
 }
 
-/// Returns all objects of a scene, sorted by distance.
+/// All objects of a scene, sorted by distance.
 fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     let ends = |object: Object| {
         let mut legs = 0..path.legs.len();
@@ -284,7 +284,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     stops
 }
 
-/// Returns the smallest and the largest z coordinate of the given points.
+/// The smallest and the largest z coordinate of the given points.
 fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);

@@ -88,7 +88,7 @@ pub enum Object {
 }
 
 impl Hit {
-    /// Returns the frame (T, B, N) at the hit for light that arrives in the frame `arriving`, and
+    /// The frame (T, B, N) at the hit for light that arrives in the frame `arriving`, and
     /// the longitude θ₀ of the direction from which the light comes. T lies in the plane of
     /// incidence. At normal incidence, X is rotated to −T (docs/conventions.md).
     #[must_use]
@@ -112,13 +112,13 @@ impl Hit {
 }
 
 impl CentralRay {
-    /// Returns the distance at which the central ray meets the first surface of its path.
+    /// The distance at which the central ray meets the first surface of its path.
     #[must_use]
     pub fn first_hit(&self) -> f64 {
         self.legs[0].length
     }
 
-    /// Returns the hit at which the leg ends; `None` for the last leg.
+    /// The hit at which the leg ends; `None` for the last leg.
     #[must_use]
     pub fn ends_at(&self, leg: usize) -> Option<&Hit> {
         self.legs.get(leg + 1)?.leaves.as_ref()
@@ -131,13 +131,13 @@ impl CentralRay {
         hits.any(|hit| hit.object == object)
     }
 
-    /// Returns the distance of a plane from the beginning of its leg.
+    /// The distance of a plane from the beginning of its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {
         plane.distance - self.legs[plane.leg].start
     }
 
-    /// Returns the frame of a leg at a distance along the path, in the frame at the light.
+    /// The frame of a leg at a distance along the path, in the frame at the light.
     #[must_use]
     pub fn frame_at(&self, distance: f64, leg: usize) -> Frame {
         let Leg { frame, start, .. } = &self.legs[leg];
@@ -244,7 +244,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns the distance and the rectangle of a surface that lies across the first leg and has
+    /// The distance and the rectangle of a surface that lies across the first leg and has
     /// its edges along X and Y. Returns `None` for any other surface.
     #[must_use]
     #[expect(
@@ -262,7 +262,7 @@ impl Surface {
         ))
     }
 
-    /// Returns the four corners of the surface, in the frame at the light.
+    /// The four corners of the surface, in the frame at the light.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 4] {
         let [x, y] = self.size.map(|side| 0.5 * side);
@@ -272,7 +272,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// Returns this scene with only the planes whose indices are given.
+    /// This scene with only the planes whose indices are given.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         let kept: Vec<VirtualPlane> = planes.iter().map(|i| self.planes[*i].clone()).collect();
@@ -289,7 +289,7 @@ impl Scene {
         }
     }
 
-    /// Returns this scene with nets instead of lattices, for measurements on 4D grids. Lattices are
+    /// This scene with nets instead of lattices, for measurements on 4D grids. Lattices are
     /// chosen for the slices of planes: at other frequencies, they may have more noise than random
     /// numbers, up to 40 dB.
     #[must_use]
@@ -302,18 +302,18 @@ impl Scene {
         self
     }
 
-    /// Returns the index of the plane with a name.
+    /// The index of the plane with a name.
     #[must_use]
     pub fn plane_named(&self, name: &str) -> Option<usize> {
         self.planes.iter().position(|plane| plane.name == name)
     }
 
-    /// Returns a scene for each light, the first of which is this scene.
+    /// A scene for each light, the first of which is this scene.
     pub fn lights(&self) -> impl Iterator<Item = &Self> {
         std::iter::once(self).chain(&self.other_lights)
     }
 
-    /// Returns the BLAKE3 hash of everything that defines the scene. The hash covers the scene
+    /// The BLAKE3 hash of everything that defines the scene. The hash covers the scene
     /// file as JSON, with defaults and overrides, followed by the name and hash of each mesh and
     /// picture.
     #[must_use]
@@ -321,7 +321,7 @@ impl Scene {
         scene_hash(&self.file, &self.inputs)
     }
 
-    /// Returns the name of a surface.
+    /// The name of a surface.
     #[must_use]
     pub fn name_of(&self, object: Object) -> &str {
         match object {

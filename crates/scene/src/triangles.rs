@@ -31,7 +31,7 @@ impl Triangles {
         }))
     }
 
-    /// Returns the lowest and the highest corner of the triangles' bounding box.
+    /// The lowest and the highest corner of the triangles' bounding box.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         self.0.bounds

@@ -24,7 +24,7 @@ const WAVES: usize = 8;
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Returns the warnings for the scene: one for each likely mistake, and one for each smooth
+    /// The warnings for the scene: one for each likely mistake, and one for each smooth
     /// mesh on the path that is too coarse.
     ///
     /// The radiance behind a mesh is f times the radiance behind a smooth surface, see
@@ -59,7 +59,7 @@ impl Scene {
         warnings
     }
 
-    /// Returns a warning about the rays of a ray file that are omitted because they do not go
+    /// A warning about the rays of a ray file that are omitted because they do not go
     /// forward.
     fn rays_behind(&self) -> Option<String> {
         let Light::Rays { rays } = &self.light else {
@@ -75,7 +75,7 @@ impl Scene {
         })
     }
 
-    /// Returns the smooth mesh at the beginning of a leg, and the difference that this mesh
+    /// The smooth mesh at the beginning of a leg, and the difference that this mesh
     /// causes at a plane.
     fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
         let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
@@ -132,7 +132,7 @@ impl Wave {
     }
 }
 
-/// Returns the plane waves whose frequencies are the spatial frequencies of a virtual plane.
+/// The plane waves whose frequencies are the spatial frequencies of a virtual plane.
 fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);
@@ -173,7 +173,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Returns the square root of the energy of the difference divided by the energy of the window.
+    /// The square root of the energy of the difference divided by the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);

@@ -18,7 +18,7 @@ const FIELDS: [(&str, &str); 5] = [
     ("frequencies", "frequencies: (rho: (max: 8), nu: (max: 8))"),
 ];
 
-/// Returns the fragments of scene files on a page of the book; each fragment begins a line.
+/// The fragments of scene files on a page of the book; each fragment begins a line.
 fn fragments(page: &str) -> Vec<String> {
     let blocks = page.split("```ron fragment\n").skip(1);
     let mut fields: Vec<String> = Vec::new();

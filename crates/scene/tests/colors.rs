@@ -26,7 +26,7 @@ fn resolved(text: &str, color: Color) -> Result<Scene, SceneError> {
     resolve("test", file, ".".as_ref(), u64::MAX)
 }
 
-/// Returns the numbers that a scene has for [`SCENE`]'s colours.
+/// The numbers that a scene has for [`SCENE`]'s colours.
 fn numbers(scene: &Scene) -> [f64; 6] {
     let radiance = |light: &Light| match light {
         Light::Area { radiance, .. } => *radiance,

@@ -6,7 +6,7 @@ use etendue_scene::{SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the scenes of this repository.
+/// The scenes of this repository.
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let below = ["table1", "wild", "words"].map(|name| folder.join(name));

@@ -36,7 +36,7 @@ fn resolved(text: &str) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, ".".as_ref(), u64::MAX)
 }
 
-/// Returns the error that results if `from` is replaced by `to` in the scene.
+/// The error that results if `from` is replaced by `to` in the scene.
 fn error(from: &str, to: &str) -> SceneError {
     assert!(text().contains(from), "{from} is not in the scene");
     resolved(&text().replacen(from, to, 1)).unwrap_err()
@@ -49,7 +49,7 @@ fn faults(from: &str, to: &str) -> Vec<Fault> {
     }
 }
 
-/// Returns a layer of `count` shapes, each written by `shape` from its number.
+/// A layer of `count` shapes, each written by `shape` from its number.
 fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     let shapes: String = (0..count).map(|i| shape(i) + ",").collect();
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
@@ -100,7 +100,7 @@ fn the_last_pair_that_overlaps_is_found() {
     }
 }
 
-/// Returns the fault of a layer of two squares and the given half-planes, if there is a fault.
+/// The fault of a layer of two squares and the given half-planes, if there is a fault.
 fn overlap_of(half_planes: &str) -> Option<String> {
     let squares =
         "Rectangle(center: (0, 0), size: (1, 1)), Rectangle(center: (2, 0), size: (1, 1)),";
@@ -153,7 +153,7 @@ fn a_fault_that_planes_share_is_told_once() {
     assert_eq!(told.lines().count(), 1, "{told}");
 }
 
-/// Returns a list of `count` items, each written with its number.
+/// A list of `count` items, each written with its number.
 fn list(count: u32, thing: impl Fn(u32) -> String) -> String {
     (0..count).fold(String::new(), |mut all, i| {
         write!(all, "{},", thing(i)).unwrap();

@@ -11,7 +11,7 @@ use std::path::Path;
 const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0.1\n";
 const ROOF: &str = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 
-/// Returns a scene file with a mesh below a light; `rest` is appended to the file.
+/// A scene file with a mesh below a light; `rest` is appended to the file.
 fn text(mesh: &str, rest: &str) -> String {
     format!(
         r#"(
@@ -30,7 +30,7 @@ fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
 }
 
-/// Returns the scene, or the error, for a mesh file with the given content.
+/// The scene, or the error, for a mesh file with the given content.
 fn file(name: &str, content: &str, rest: &str) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), content).unwrap();

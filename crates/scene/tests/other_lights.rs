@@ -9,7 +9,7 @@ const FIRST: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const NEAR: &str = r#"Grating(name: "near", center: (0, 0, 0.2), axis: X, frequency: 2),"#;
 const FAR: &str = r#"Grating(name: "far", center: (0, 0, 1.25), axis: X, frequency: 3),"#;
 
-/// Returns a scene with a rectangle, a mirror and a mesh. `light` has the fields of the lights.
+/// A scene with a rectangle, a mirror and a mesh. `light` has the fields of the lights.
 fn text(light: &str, blockers: &str, at: &str) -> String {
     format!(
         r#"(
@@ -33,7 +33,7 @@ fn resolved(text: &str) -> Scene {
     resolve("lights", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns all distances and positions of a scene as one list, without blockers behind the light.
+/// All distances and positions of a scene as one list, without blockers behind the light.
 fn numbers(scene: &Scene) -> Vec<f64> {
     let mut all = Vec::new();
     for leg in &scene.path.legs {

@@ -74,7 +74,7 @@ fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[
     writer.write_image_data(bytes).unwrap();
 }
 
-/// Returns a folder with the files of a valid scene.
+/// A folder with the files of a valid scene.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let levels = [0, 51, 102, 153, 204, 255];

@@ -4,7 +4,7 @@
 
 use etendue_scene::{Fault, SceneError, SceneFile};
 
-/// Returns the line and column that a message gives for a field.
+/// The line and column that a message gives for a field.
 fn place(text: &str, field: &str) -> Option<[usize; 2]> {
     let fault = Fault {
         field: field.to_owned(),

@@ -10,7 +10,7 @@ use std::path::Path;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// Returns a folder that contains the folder `scene`, which holds a mesh, and the folder `secret`.
+/// A folder that contains the folder `scene`, which holds a mesh, and the folder `secret`.
 fn folders() -> tempfile::TempDir {
     let top = tempfile::tempdir().unwrap();
     let at = |name: &str| top.path().join(name);

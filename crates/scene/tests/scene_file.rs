@@ -21,13 +21,13 @@ fn faults(text: &str) -> Vec<Fault> {
     }
 }
 
-/// Returns the scene file fig9b with `from` replaced by `to`; `from` must occur in the file.
+/// The scene file fig9b with `from` replaced by `to`; `from` must occur in the file.
 fn edited(from: &str, to: &str) -> String {
     assert!(FIG9B.contains(from), "{from} is not in the scene");
     FIG9B.replacen(from, to, 1)
 }
 
-/// Returns the rectangles of the scene's first layer of blockers.
+/// The rectangles of the scene's first layer of blockers.
 fn squares_of(scene: &Scene) -> Vec<Rectangle> {
     let Mask::Opaque { shapes, .. } = &scene.blockers[0].mask else {
         panic!("the layer is opaque");

@@ -263,7 +263,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
     }
 }
 
-/// Returns the scene with an aperture as its only blockers.
+/// The scene with an aperture as its only blockers.
 fn with_hole(hole: &str) -> Result<Scene, SceneError> {
     let aperture = format!(r#"Aperture(name: "star", center: (0.3, -0.2, 1), hole: {hole})"#);
     resolved(&text().replacen(BLOCKERS, &aperture, 1))
@@ -340,7 +340,7 @@ fn holes_have_limits() {
     }
 }
 
-/// Returns the scene with bars as its only blockers, of which some fields are given.
+/// The scene with bars as its only blockers, of which some fields are given.
 fn with_bars(center: &str, axis: &str, fields: &str) -> Result<Scene, SceneError> {
     let bars = format!(r#"Bars(name: "star", center: {center}, axis: {axis}, {fields})"#);
     resolved(&text().replacen(BLOCKERS, &bars, 1))

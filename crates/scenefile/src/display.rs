@@ -20,7 +20,7 @@ pub fn shown(value: impl Display, most: usize) -> String {
     cut.text
 }
 
-/// Returns a number in its usual notation.
+/// A number in its usual notation.
 #[must_use]
 pub fn number(x: f64) -> String {
     let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e6).contains(&x.abs());

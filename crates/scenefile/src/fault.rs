@@ -17,7 +17,7 @@ pub struct Fault {
     pub memory: bool,
 }
 
-/// Returns a fault of a file, with its position, the text at this position, and what is allowed
+/// A fault of a file, with its position, the text at this position, and what is allowed
 /// there.
 #[must_use]
 pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
@@ -73,7 +73,7 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Returns the error in words, with one line for each fault and its position. The position of a
+    /// The error in words, with one line for each fault and its position. The position of a
     /// fault is a line and a column of the scene file. If an argument such as `--set run.photons=3`
     /// has set the field, the argument is shown as the position.
     #[must_use]

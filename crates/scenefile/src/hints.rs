@@ -4,13 +4,13 @@ use crate::place::steps;
 use crate::schema::{element, referred, schema};
 use serde_json::Value;
 
-/// Returns the description of the field at a path, and an example.
+/// The description of the field at a path, and an example.
 fn field(path: &str) -> [&'static str; 2] {
     let nodes = below(schema(), &steps(path));
     told(path, nodes.first().copied().unwrap_or(&Value::Null))
 }
 
-/// Returns the description of a node of the schema, and an example.
+/// The description of a node of the schema, and an example.
 fn told(path: &str, node: &'static Value) -> [&'static str; 2] {
     let words = |node: &'static Value| Some([node["title"].as_str()?, node["x-ron"].as_str()?]);
     match words(node).or_else(|| words(referred(node))) {
@@ -46,7 +46,7 @@ fn below(node: &'static Value, steps: &[&str]) -> Vec<&'static Value> {
     contents.flat_map(|content| below(content, steps)).collect()
 }
 
-/// Returns the unit of the number at a path such as `blockers.0.pitch`; empty if the schema
+/// The unit of the number at a path such as `blockers.0.pitch`; empty if the schema
 /// states no unit.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
@@ -59,7 +59,7 @@ pub fn unit(path: &str) -> &'static str {
     }
 }
 
-/// Returns a description of the values that the field at a path accepts. A path does not name the
+/// A description of the values that the field at a path accepts. A path does not name the
 /// variant, so the text describes each type that the field has in any variant.
 pub(crate) fn wanted(path: &str) -> String {
     let each = kinds(path).into_iter();
@@ -67,7 +67,7 @@ pub(crate) fn wanted(path: &str) -> String {
     each.collect::<Vec<_>>().join(", or ")
 }
 
-/// Returns the description and the example of the first field of each type at a path.
+/// The description and the example of the first field of each type at a path.
 fn kinds(path: &str) -> Vec<[&'static str; 2]> {
     let mut types = Vec::new();
     let mut nodes = below(schema(), &steps(path));
@@ -83,7 +83,7 @@ fn kinds(path: &str) -> Vec<[&'static str; 2]> {
     nodes.into_iter().map(|node| told(path, node)).collect()
 }
 
-/// Returns an example of the field at a path.
+/// An example of the field at a path.
 pub(crate) fn example(path: &str) -> &'static str {
     field(path)[1]
 }
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(super::unit("surfaces.0.albedo"), "");
     }
 
-    /// Returns the texts of the scenes in this repository.
+    /// The texts of the scenes in this repository.
     fn scenes() -> Vec<String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
         let below = ["table1", "wild", "words"].map(|name| folder.join(name));

@@ -4,7 +4,7 @@ use crate::hints::wanted;
 use crate::suggestion::did_you_mean;
 use serde_path_to_error::{Path, Segment};
 
-/// Returns a path as messages show it, without names of variants.
+/// A path as messages show it, without names of variants.
 pub(crate) fn path_of(path: &Path) -> String {
     let mut written = String::new();
     for segment in path.iter() {
@@ -18,7 +18,7 @@ pub(crate) fn path_of(path: &Path) -> String {
     written
 }
 
-/// Returns the reason why a value does not fit its field or a nested field.
+/// The reason why a value does not fit its field or a nested field.
 pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
     let field = path_of(error.path());
     let told = error.inner().to_string();

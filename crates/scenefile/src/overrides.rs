@@ -10,7 +10,7 @@ use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 
 impl SceneFile {
-    /// Returns the scene file with the field at `path` (such as `blockers.0.fill`, or
+    /// The scene file with the field at `path` (such as `blockers.0.fill`, or
     /// `blockers[0].fill` as in messages) set to `value`.
     ///
     /// Names of variants (`Rectangle`, `JitteredSquares`) may be left out of the path.
@@ -37,7 +37,7 @@ impl SceneFile {
         })
     }
 
-    /// Returns the scene file after several fields have been set, one after the other, by
+    /// The scene file after several fields have been set, one after the other, by
     /// [`Self::with`].
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl SceneFile {
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
 
-    /// Returns the file as a tree of values with all fields, which includes fields that a file does
+    /// The file as a tree of values with all fields, which includes fields that a file does
     /// not write because they were added later.
     fn tree(&self) -> serde_json::Result<Value> {
         let mut tree = serde_json::to_value(self)?;
@@ -92,7 +92,7 @@ fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the child called `name`. If the node is a variant of an enum, looks inside the variant.
+/// The child called `name`. If the node is a variant of an enum, looks inside the variant.
 fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
     match node {
         Value::Array(items) => items.get_mut(name.parse::<usize>().ok()?),
@@ -114,7 +114,7 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Returns the message for a node that has no field `name`. The message lists the fields that the
+/// The message for a node that has no field `name`. The message lists the fields that the
 /// node has.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
@@ -192,14 +192,14 @@ fn fields(text: &str, deepest: usize) -> Option<Value> {
     }
 }
 
-/// Returns the name and the value of a named field.
+/// The name and the value of a named field.
 fn named(text: &str) -> Option<(&str, &str)> {
     let (name, value) = text.split_once(':')?;
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     name.trim().chars().all(is_name).then_some((name, value))
 }
 
-/// Returns the elements of a list, separated at the commas that are outside of brackets.
+/// The elements of a list, separated at the commas that are outside of brackets.
 fn separated(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;
     text.split(|c: char| {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 /// The text above the tables on the page.
 const HEAD: &str = include_str!("page_head.md");
 
-/// Returns the page of the book that describes all types of scene files with their fields, in
+/// The page of the book that describes all types of scene files with their fields, in
 /// Markdown. The types are in the order of their first use.
 #[must_use]
 pub fn page() -> String {
@@ -117,14 +117,14 @@ fn holds(node: &Value) -> String {
     }
 }
 
-/// Returns the named type of a node, or of the items if the node is a list.
+/// The named type of a node, or of the items if the node is a list.
 fn type_of(node: &Value) -> Option<&str> {
     let mut met = Vec::new();
     named(node, &mut met);
     met.first().copied()
 }
 
-/// Returns a table of the fields of a node, one per row.
+/// A table of the fields of a node, one per row.
 fn table(node: &Value) -> String {
     let mut text = String::from("\n| field | meaning | value | default | example |\n");
     text.push_str("|---|---|---|---|---|\n");
@@ -156,7 +156,7 @@ fn table(node: &Value) -> String {
     text
 }
 
-/// Returns a default value as it is written in a scene file.
+/// A default value as it is written in a scene file.
 fn default(value: &Value) -> String {
     match value {
         Value::Null => "left out".to_owned(),

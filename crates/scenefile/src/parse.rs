@@ -66,7 +66,7 @@ fn json(text: &str) -> Result<SceneFile, SceneError> {
     })
 }
 
-/// Returns the path of the field `field` within the field at `path`.
+/// The path of the field `field` within the field at `path`.
 fn below(path: &str, field: &str) -> String {
     let dot = if path.is_empty() { "" } else { "." };
     format!("{path}{dot}{}", shown(field, limits::NAME))
@@ -158,7 +158,7 @@ fn is_shape(code: &Error, path: &str) -> bool {
     !is_cut && !has_fields(path)
 }
 
-/// Returns the text at a position between fields, and the text that is allowed at this position.
+/// The text at a position between fields, and the text that is allowed at this position.
 fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let rest = text.lines().nth(line - 1).unwrap_or_default();
     let at = rest.char_indices().nth(column - 1);
@@ -188,7 +188,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     format!("unexpected `{found}`; allowed: {allowed}")
 }
 
-/// Returns the beginning of a value, on one line.
+/// The beginning of a value, on one line.
 fn excerpt(value: &str) -> String {
     // Only the beginning of the value is used, because a word may be as long as the entire file.
     let start: String = value.chars().take(4 * EXCERPT).collect();

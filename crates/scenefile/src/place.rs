@@ -14,7 +14,7 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) value: &'a str,
 }
 
-/// Returns a path such as `blockers[0].fill` in the notation of `--set`: `blockers.0.fill`.
+/// A path such as `blockers[0].fill` in the notation of `--set`: `blockers.0.fill`.
 #[must_use]
 pub fn dotted(path: &str) -> String {
     path.replace('[', ".").replace(']', "")
@@ -30,7 +30,7 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
     steps.filter(is_step).collect()
 }
 
-/// Returns the value at a path or, if it is not written, the innermost enclosing value that is
+/// The value at a path or, if it is not written, the innermost enclosing value that is
 /// written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
@@ -133,7 +133,7 @@ impl OpenBracket<'_> {
         }
     }
 
-    /// Returns the number of steps of the path that lead to the next value.
+    /// The number of steps of the path that lead to the next value.
     fn child(&self, steps: &[&str]) -> Option<usize> {
         let at = self.at?;
         let step = steps.get(at);
@@ -193,7 +193,7 @@ impl Iterator for RonTokens<'_> {
     }
 }
 
-/// Returns the length in bytes of white space and comments.
+/// The length in bytes of white space and comments.
 fn blank(text: &str) -> usize {
     let mut rest = text.trim_start();
     loop {
@@ -231,7 +231,7 @@ fn block(text: &str) -> usize {
     text.len()
 }
 
-/// Returns the length in bytes of a string, plain or raw.
+/// The length in bytes of a string, plain or raw.
 fn string(text: &str) -> Option<usize> {
     let plain = text.strip_prefix('"');
     if let Some(inside) = plain {
@@ -251,7 +251,7 @@ fn string(text: &str) -> Option<usize> {
     Some(end.map_or(text.len(), |end| open + end + 1 + fence.len()))
 }
 
-/// Returns the number of bytes before the next bracket, comma, colon, quote, blank or comment. If
+/// The number of bytes before the next bracket, comma, colon, quote, blank or comment. If
 /// the text is not empty, at least its first character is counted.
 pub(crate) fn word(text: &str) -> usize {
     let ends = |c: char| c.is_whitespace() || "()[]{},:\"/".contains(c);

@@ -5,7 +5,7 @@ use crate::file::{is_number, positive};
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-/// Returns the JSON schema of scene files in JSON. In these files, a variant is an object with one
+/// The JSON schema of scene files in JSON. In these files, a variant is an object with one
 /// field. `title` describes a field, `x-ron` is an example in the notation of a scene file, and
 /// `x-range` gives the allowed numbers of the field.
 #[must_use]
@@ -41,19 +41,19 @@ fn complete(node: &mut Value, types: &Value) {
     }
 }
 
-/// Returns the name of the type of a node; the type may be optional.
+/// The name of the type of a node; the type may be optional.
 fn name_of_type(node: &Value) -> Option<&str> {
     let types = [node, node.get("anyOf").map_or(node, |any| &any[0])];
     let mut references = types.iter().filter_map(|node| node.get("$ref")?.as_str());
     references.next()?.rsplit('/').next()
 }
 
-/// Returns a node of the schema, with its reference resolved.
+/// A node of the schema, with its reference resolved.
 pub(crate) fn referred(node: &'static Value) -> &'static Value {
     name_of_type(node).map_or(node, |name| &schema()["$defs"][name])
 }
 
-/// Returns the node of a variant's content; `node` is the node of the variant's type.
+/// The node of a variant's content; `node` is the node of the variant's type.
 pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
     let variants = referred(node)["oneOf"].as_array();
     let mut contents = variants
@@ -65,7 +65,7 @@ pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
         .unwrap_or(&Value::Null)
 }
 
-/// Returns the node of the element with the index `place`; `node` is the node of the list.
+/// The node of the element with the index `place`; `node` is the node of the list.
 pub(crate) fn element(node: &'static Value, place: usize) -> &'static Value {
     let node = referred(node);
     match node.get("prefixItems") {

@@ -13,7 +13,7 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Returns the known name that is most similar to `name`, or `None` if no known name is similar.
+/// The known name that is most similar to `name`, or `None` if no known name is similar.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {

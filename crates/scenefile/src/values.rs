@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt;
 
 impl SceneFile {
-    /// Returns a fault for each number that is outside its field's range in the schema.
+    /// A fault for each number that is outside its field's range in the schema.
     #[must_use]
     #[expect(
         clippy::missing_panics_doc,

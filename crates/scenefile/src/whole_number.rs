@@ -1,6 +1,6 @@
 //! Recognises whole numbers among doubles.
 
-/// Returns a number as an integer, if it is a whole number.
+/// A number as an integer, if it is a whole number.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -18,7 +18,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Returns the power of a slice [ρ, ν] along the axis, and the axis.
+    /// A slice's power [ρ, ν] summed onto the axis, and the axis.
     fn marginal(
         self,
         power: ArrayView2<'_, f64>,
@@ -30,14 +30,14 @@ impl Along {
         }
     }
 
-    /// Returns the bandwidth of the power of a slice [ρ, ν]: see [`bandwidth`].
+    /// The bandwidth of the power of a slice [ρ, ν]: see [`bandwidth`].
     #[must_use]
     pub fn bandwidth(self, power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> {
         let (marginal, axis) = self.marginal(power, grid);
         bandwidth(marginal.view(), &axis, BANDWIDTH_FRACTION)
     }
 
-    /// Returns what the power of a slice [ρ, ν] within each cell end lacks to [`BANDWIDTH_FRACTION`]
+    /// What the power of a slice [ρ, ν] within each cell end lacks to [`BANDWIDTH_FRACTION`]
     /// of the whole (see [`missing`]), and last what the power within the frequency `bound` lacks.
     pub(crate) fn missing(
         self,
@@ -56,7 +56,7 @@ impl Along {
         all.into()
     }
 
-    /// Returns a bandwidth with its standard error. `missing` is what [`Along::missing`] returns for
+    /// A bandwidth with its standard error. `missing` is what [`Along::missing`] returns for
     /// it, and `errors` are the standard errors of these numbers.
     ///
     /// The error is found as that of a quantile (Woodruff 1952): it is the distance to the farther of
@@ -97,7 +97,7 @@ pub struct Widest<T> {
     pub value: T,
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]. If several
+/// The largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]. If several
 /// azimuths have the largest bandwidth, the first of them is returned.
 #[must_use]
 pub fn widest(power: ArrayView3<'_, f64>, grid: &SliceGrid, along: Along) -> Option<Widest<f64>> {
@@ -106,7 +106,7 @@ pub fn widest(power: ArrayView3<'_, f64>, grid: &SliceGrid, along: Along) -> Opt
     Some(Widest { azimuth, value })
 }
 
-/// Returns the index of the slice with the largest bandwidth, and the bandwidth of this slice.
+/// The index of the slice with the largest bandwidth, and the bandwidth of this slice.
 pub(crate) fn widest_slice(
     power: ArrayView3<'_, f64>,
     grid: &SliceGrid,
@@ -119,7 +119,7 @@ pub(crate) fn widest_slice(
     each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
 }
 
-/// Returns the smallest frequency B such that the power at |frequency| ≤ B is at least `fraction`
+/// The smallest frequency B such that the power at |frequency| ≤ B is at least `fraction`
 /// times the total power.
 ///
 /// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency is
@@ -136,7 +136,7 @@ pub fn bandwidth(
     (total > 0.0).then(|| crossing(&missing(marginal, axis, fraction), 0.0) * axis.spacing)
 }
 
-/// Returns what the power within each cell end lacks to `fraction` of the whole power. The first
+/// What the power within each cell end lacks to `fraction` of the whole power. The first
 /// number belongs to frequency zero. The two cells at the same distance from zero are added; the
 /// single cell at zero extends to both sides of zero.
 fn missing(marginal: ArrayView1<'_, f64>, axis: &FrequencyAxis, fraction: f64) -> Vec<f64> {
@@ -153,13 +153,13 @@ fn missing(marginal: ArrayView1<'_, f64>, axis: &FrequencyAxis, fraction: f64) -
     std::iter::once(wanted).chain(within).collect()
 }
 
-/// Returns the frequency at which cell `i` begins, or at which the cell before it ends, in steps of
+/// The frequency at which cell `i` begins, or at which the cell before it ends, in steps of
 /// the axis.
 fn cell_end(i: usize) -> f64 {
     if i == 0 { 0.0 } else { i as f64 - 0.5 }
 }
 
-/// Returns the lowest frequency, in steps of the axis, at which the enclosed power lacks `level` or
+/// The lowest frequency, in steps of the axis, at which the enclosed power lacks `level` or
 /// less.
 fn crossing(missing: &[f64], level: f64) -> f64 {
     let Some(i) = missing.iter().position(|lack| *lack <= level) else {
@@ -216,7 +216,7 @@ mod tests {
         assert!((nu - 1.386).abs() < 0.02, "{nu}"); // curvature within a cell of 0.25
     }
 
-    /// Returns ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
+    /// ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
     fn hann(f: f64) -> f64 {
         let sinc = |x: f64| match x.abs() < 1e-9 {
             true => 1.0,
@@ -225,7 +225,7 @@ mod tests {
         sinc(2.0 * f) + 0.5 * (sinc(2.0 * f - 1.0) + sinc(2.0 * f + 1.0))
     }
 
-    /// Returns the power along one axis of a Hann window alone, or of a sine of contrast 1
+    /// The power along one axis of a Hann window alone, or of a sine of contrast 1
     /// multiplied by the window.
     fn seen(frequency: Option<f64>, axis: &FrequencyAxis) -> Array1<f64> {
         let values = axis.values().into_iter();

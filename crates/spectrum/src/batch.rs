@@ -66,7 +66,7 @@ pub struct PartialBatch {
 }
 
 impl PartialBatch {
-    /// Returns a batch without any parts.
+    /// A batch without any parts.
     #[must_use]
     pub fn new(index: u32) -> Self {
         Self {

@@ -15,7 +15,7 @@ pub struct CovarianceEstimate {
     pub error: Array2<f64>,
 }
 
-/// Returns the covariance of the windowed light field at plane `plane`; `None` if no light arrived.
+/// The covariance of the windowed light field at plane `plane`; `None` if no light arrived.
 ///
 /// # Errors
 ///

@@ -75,7 +75,7 @@ impl DirectionalBandwidth {
         Ok(Some(found))
     }
 
-    /// Returns the power that noise adds to the power of the mean spectrum.
+    /// The power that noise adds to the power of the mean spectrum.
     ///
     /// # Errors
     ///
@@ -86,7 +86,7 @@ impl DirectionalBandwidth {
         Ok(noise_of(&power, &pictures[0].grid))
     }
 
-    /// Returns the bandwidths of the spectrum of a window alone, without errors.
+    /// The bandwidths of the spectrum of a window alone, without errors.
     ///
     /// # Panics
     ///
@@ -118,7 +118,7 @@ impl DirectionalBandwidth {
         })
     }
 
-    /// Returns the bandwidth at the azimuth nearest to a given azimuth, in radians.
+    /// The bandwidth at the azimuth nearest to a given azimuth, in radians.
     #[must_use]
     pub fn at(&self, azimuth: f64) -> f64 {
         let count = self.along.len();
@@ -148,7 +148,7 @@ impl<'a> PolarPower<'a> {
         (total > 0.0).then_some(Self { grid, cells, total })
     }
 
-    /// Returns the bandwidth along a direction e.
+    /// The bandwidth along a direction e.
     fn bandwidth(&self, azimuth: f64) -> f64 {
         let mut within = Cumulative::new(self.grid);
         for cell in &self.cells {
@@ -232,7 +232,7 @@ impl Cumulative {
         }
     }
 
-    /// Returns the first limit below which the power is at least `wanted`.
+    /// The first limit below which the power is at least `wanted`.
     fn reaches(&self, wanted: f64) -> f64 {
         let mut within = 0.0;
         for (bin, power) in self.bins.iter().enumerate() {
@@ -252,7 +252,7 @@ mod tests {
     use crate::variation::WindowedMean;
     use etendue_field::{Complex, FrequencyAxis, Profile};
 
-    /// Returns the grid of a probe for a window of half-width 1.
+    /// The grid of a probe for a window of half-width 1.
     fn grid() -> SliceGrid {
         SliceGrid {
             azimuths: 40,
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Returns the spectrum of a + b cos(2π f · (u, v)) behind the window, divided by the
+    /// The spectrum of a + b cos(2π f · (u, v)) behind the window, divided by the
     /// spectrum of the point in x.
     fn wave(mean: f64, contrast: f64, frequency: [f64; 2]) -> Slices {
         let (grid, window) = (grid(), window());

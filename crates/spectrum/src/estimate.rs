@@ -50,7 +50,7 @@ impl TooFewBatches {
     }
 }
 
-/// Returns the mean slices at plane `plane` with their variance.
+/// The mean slices at plane `plane` with their variance.
 ///
 /// # Errors
 ///
@@ -82,7 +82,7 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
     })
 }
 
-/// Returns the relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
+/// The relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
 /// independent frequencies. Returns `None` if no photon arrived, or if the estimated noise Σσ²
 /// exceeds the power Σ|S̄|².
 ///
@@ -102,7 +102,7 @@ pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, Too
     Ok((light > 0.0).then(|| (noise / light).sqrt()))
 }
 
-/// Returns the mean projection at plane `plane` with its standard error.
+/// The mean projection at plane `plane` with its standard error.
 ///
 /// # Errors
 ///

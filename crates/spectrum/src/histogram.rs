@@ -14,7 +14,7 @@ pub(crate) struct ProjectionHistogram {
 }
 
 impl ProjectionHistogram {
-    /// Returns an empty histogram over `grid`.
+    /// An empty histogram over `grid`.
     #[must_use]
     pub(crate) fn new(grid: ProjectionGrid) -> Self {
         Self {

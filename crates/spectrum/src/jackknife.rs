@@ -46,13 +46,13 @@ impl<D: Dimension> Jackknife<D> {
             });
     }
 
-    /// Returns the variance of the estimate.
+    /// The variance of the estimate.
     pub(crate) fn variance(self) -> Array<f64, D> {
         let count = self.count as f64;
         self.squares * ((count - 1.0) / count)
     }
 
-    /// Returns the variance of the values themselves, with the divisor R − 1; zero for one value.
+    /// The variance of the values themselves, with the divisor R − 1; zero for one value.
     pub(crate) fn sample_variance(self) -> Array<f64, D> {
         self.squares / (self.count as f64 - 1.0).max(1.0)
     }

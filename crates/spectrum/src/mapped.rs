@@ -7,7 +7,7 @@ struct MappedPhotons<'a, F> {
     map: F,
 }
 
-/// Returns photons whose crossings are replaced by a function of each of them. Blocks, parts and
+/// Photons whose crossings are replaced by a function of each of them. Blocks, parts and
 /// the ledger are those of the original source.
 #[must_use]
 pub fn mapped_photons<'a>(

@@ -34,7 +34,7 @@ pub trait Watch: Sync {
     /// Receives the number of photons traced since the last call.
     fn traced(&self, photons: u64);
 
-    /// Returns whether a part of a batch should be measured. This function is called just before
+    /// Whether a part of a batch should be measured. This function is called just before
     /// the part is measured. If it returns false, this part and the later parts of the batch are
     /// not measured.
     fn should_continue(&self, _batch: u32, _part: u32) -> bool {
@@ -70,6 +70,7 @@ pub fn measure_watched(
     batches: &mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &dyn Watch,
 ) -> (Measurement, Vec<PartialBatch>) {
+    // The error of the reduced transform would exceed the noise of quiet photons.
     let plan = if source.is_precise() {
         SliceTransform::new
     } else {
@@ -100,6 +101,7 @@ pub fn measure_watched(
     let mut whole = Vec::new();
     let mut begun = Vec::new();
     for BatchSum { parts, state, .. } in all.into_iter().filter_map(Arc::into_inner) {
+        // If a thread has panicked, the sums of the others are still right.
         let state = state.into_inner().unwrap_or_else(PoisonError::into_inner);
         match state.partial {
             PartialBatch {
@@ -191,7 +193,7 @@ impl BatchSum {
     }
 }
 
-/// Returns the contribution of a part of a batch to the means over the entire batch.
+/// The contribution of a part of a batch to the means over the entire batch.
 fn measure_part(
     source: &dyn PhotonSource,
     [index, part]: [u32; 2],

@@ -36,7 +36,7 @@ pub enum MergeError {
 }
 
 impl Measurement {
-    /// Returns a measurement at `planes` that has no batches yet.
+    /// A measurement at `planes` that has no batches yet.
     #[must_use]
     pub fn new(planes: Vec<VirtualPlane>) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Measurement {
         }
     }
 
-    /// Returns the measurement with `batches`. The batches must have distinct numbers and slices
+    /// The measurement with `batches`. The batches must have distinct numbers and slices
     /// that match `planes`.
     pub(crate) fn of(planes: &[VirtualPlane], batches: impl Iterator<Item = Batch>) -> Self {
         Self {
@@ -54,13 +54,13 @@ impl Measurement {
         }
     }
 
-    /// Returns the virtual planes of the measurement.
+    /// The virtual planes of the measurement.
     #[must_use]
     pub fn planes(&self) -> &[VirtualPlane] {
         &self.planes
     }
 
-    /// Returns the batches, in ascending order of their numbers.
+    /// The batches, in ascending order of their numbers.
     pub fn batches(&self) -> impl ExactSizeIterator<Item = &Batch> {
         self.batches.values()
     }
@@ -71,7 +71,7 @@ impl Measurement {
         self.batches.contains_key(&index)
     }
 
-    /// Returns the measurement of each batch at plane `plane`, in ascending order of the batches'
+    /// The measurement of each batch at plane `plane`, in ascending order of the batches'
     /// numbers.
     ///
     /// # Panics
@@ -81,7 +81,7 @@ impl Measurement {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }
 
-    /// Returns the slices of each batch at plane `plane` without the mean of the light in the
+    /// The slices of each batch at plane `plane` minus the mean of the light in the
     /// window (see [`WindowedMean`]).
     ///
     /// # Panics
@@ -94,13 +94,13 @@ impl Measurement {
         WindowedMean::new(window, grid).removed_from_all(batches)
     }
 
-    /// Returns the number of photons emitted in all batches.
+    /// The number of photons emitted in all batches.
     #[must_use]
     pub fn emitted(&self) -> u64 {
         self.batches.values().map(|batch| batch.emitted).sum()
     }
 
-    /// Returns the ledger of the photons' flux, summed over batches.
+    /// The ledger of the photons' flux, summed over batches.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
         let mut sum = Ledger::default();
@@ -110,7 +110,7 @@ impl Measurement {
         sum
     }
 
-    /// Returns the numbers of photons inside and outside the window of plane `plane`, summed over
+    /// The numbers of photons inside and outside the window of plane `plane`, summed over
     /// batches.
     #[must_use]
     pub fn tally(&self, plane: usize) -> PlaneTally {

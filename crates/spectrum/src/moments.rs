@@ -3,7 +3,7 @@
 use etendue_field::{Profile, SliceGrid, Window};
 use ndarray::{ArrayView2, Axis};
 
-/// Returns the second moment Σ P ρᵐ νⁿ / Σ P of the power P, where `powers` is [m, n] with m + n
+/// The second moment Σ P ρᵐ νⁿ / Σ P of the power P, where `powers` is [m, n] with m + n
 /// = 2.
 ///
 /// The sum runs over the frequencies of the grid. If the field has an edge, the moment grows
@@ -24,7 +24,7 @@ pub fn second_moment(
     (all > 0.0).then(|| sum / all)
 }
 
-/// Returns the slope dν/dρ of the line along which the power lies, by least squares: Σ P ρ ν / Σ
+/// The slope dν/dρ of the line along which the power lies, by least squares: Σ P ρ ν / Σ
 /// P ρ².
 ///
 /// Travel by the distance d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit:
@@ -40,7 +40,7 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// Returns H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0). In the spectrum at ν = 0, H is the share of the
+/// H = Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0). In the spectrum at ν = 0, H is the share of the
 /// energy at frequencies above a cut.
 ///
 /// On a plane where light leaves a diffuse surface, the field is constant in slope, and the
@@ -59,7 +59,7 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
     (all > 0.0).then(|| high / all)
 }
 
-/// Returns the share of the power that lies in the wedge of blockers whose distances from the plane
+/// The share of the power that lies in the wedge of blockers whose distances from the plane
 /// are in `[nearest, farthest]`, in metres.
 ///
 /// A blocker at the distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005,
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Returns the power of a Gaussian ridge along ν = `slope` ρ.
+    /// The power of a Gaussian ridge along ν = `slope` ρ.
     fn ridge(slope: f64) -> Array2<f64> {
         let grid = grid();
         Array2::from_shape_fn((grid.rho.count(), grid.nu.count()), |(i, j)| {

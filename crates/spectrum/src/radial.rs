@@ -135,7 +135,7 @@ impl<'m> CrossPower<'m> {
         })
     }
 
-    /// Returns the cross power of a single slice. `slice` is the index among the slices of this
+    /// The cross power of a single slice. `slice` is the index among the slices of this
     /// cross power.
     fn slice(&self, slice: usize) -> Self {
         let one = slice..slice + 1;
@@ -149,7 +149,7 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the power U averaged over the azimuths, [ρ, ν].
+    /// The power U averaged over the azimuths, [ρ, ν].
     #[must_use]
     pub fn power(&self) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -157,7 +157,7 @@ impl<'m> CrossPower<'m> {
             .unfold_radial((mean(&self.pairs) / (r * (r - 1.0))).view())
     }
 
-    /// Returns the power with the batch at index `left_out` left out, [ρ, ν].
+    /// The power with the batch at index `left_out` left out, [ρ, ν].
     ///
     /// # Panics
     ///
@@ -170,7 +170,7 @@ impl<'m> CrossPower<'m> {
         self.grid.unfold_radial(power.view())
     }
 
-    /// Returns Σ_(s≠r) Re(S_r conj S_s) for the batch r.
+    /// Σ_(s≠r) Re(S_r conj S_s) for the batch r.
     fn row(&self, batch: usize) -> Array3<f64> {
         let mut row = Array3::zeros(self.sum.raw_dim());
         ndarray::Zip::from(&mut row)
@@ -180,13 +180,13 @@ impl<'m> CrossPower<'m> {
         row
     }
 
-    /// Returns the power that noise adds to the mean spectrum, [azimuth, ρ ≥ 0, ν].
+    /// The power that noise adds to the mean spectrum, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn noise_at_azimuths(&self) -> Array3<f64> {
         let r = self.batches.len() as f64;
         self.sum.mapv(|s| s.norm_sqr() / (r * r)) - &self.pairs / (r * (r - 1.0))
     }
 
-    /// Returns the power at each azimuth, [azimuth, ρ ≥ 0, ν]: first from all batches, then with
+    /// The power at each azimuth, [azimuth, ρ ≥ 0, ν]: first from all batches, then with
     /// each batch left out in turn.
     pub(crate) fn at_azimuths(&self) -> impl Iterator<Item = Array3<f64>> {
         let r = self.batches.len() as f64;
@@ -196,7 +196,7 @@ impl<'m> CrossPower<'m> {
         std::iter::once(&self.pairs / (r * (r - 1.0))).chain(without)
     }
 
-    /// Returns the power, the shot noise and the standard error.
+    /// The power, the shot noise and the standard error.
     #[must_use]
     pub fn radial(&self) -> RadialPower {
         let power = self.power();
@@ -213,7 +213,7 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths and its standard error. The error belongs to
+    /// The largest bandwidth over the azimuths and its standard error. The error belongs to
     /// the bandwidth at this azimuth. If the bandwidths of several azimuths are nearly equal, noise
     /// decides which of them is the largest, and the result exceeds the true value by about the
     /// error.
@@ -228,7 +228,7 @@ impl<'m> CrossPower<'m> {
         })
     }
 
-    /// Returns a statistic of the power, such as a slope, with its standard error by the
+    /// A statistic of the power, such as a slope, with its standard error by the
     /// delete-one jackknife, or with the error from noise alone if this is larger.
     ///
     /// Returns `None` if the statistic does not exist, either for all batches together or if any
@@ -259,7 +259,7 @@ impl<'m> CrossPower<'m> {
         Some([values, errors])
     }
 
-    /// Returns the variance of a statistic if the power were noise alone: 2/(R(R−1)) times the
+    /// The variance of a statistic if the power were noise alone: 2/(R(R−1)) times the
     /// variance of what a pair of batches adds.
     ///
     /// The jackknife varies with Σ S, which is zero by chance now and then where there is only noise.
@@ -287,12 +287,12 @@ impl<'m> CrossPower<'m> {
     }
 }
 
-/// Returns the slices at some azimuths.
+/// The slices at some azimuths.
 fn at<'a, T>(slices: &'a Array3<T>, azimuths: &Range<usize>) -> ArrayView3<'a, T> {
     slices.slice_axis(Axis(0), Slice::from(azimuths.clone()))
 }
 
-/// Returns the mean of slices over azimuths.
+/// The mean of slices over azimuths.
 fn mean(slices: &Array3<f64>) -> Array2<f64> {
     slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
 }

@@ -14,7 +14,7 @@ impl RayMoments {
     /// Number of sums.
     pub const COUNT: usize = 15;
 
-    /// Returns the central second moments, [4, 4]; `None` if no light arrived.
+    /// The central second moments, [4, 4]; `None` if no light arrived.
     pub(crate) fn covariance(&self) -> Option<Array2<f64>> {
         let [total, sums @ ..] = self.0;
         if total <= 0.0 {
@@ -63,7 +63,7 @@ impl MomentSums {
         self.0 = sums;
     }
 
-    /// Returns the sums of the recorded rays times `scale`, and resets the sums for the next
+    /// The sums of the recorded rays times `scale`, and resets the sums for the next
     /// part.
     pub(crate) fn finish(&mut self, scale: f64) -> RayMoments {
         let sums = std::mem::take(self);

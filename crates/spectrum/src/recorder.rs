@@ -83,7 +83,7 @@ impl<'plan> Recorder<'plan> {
         self.tally.outside += crossed - inside;
     }
 
-    /// Returns the recorded sums divided by the number of emitted photons, and resets them for
+    /// The recorded sums divided by the number of emitted photons, and resets them for
     /// the next part.
     pub(crate) fn finish(&mut self, scale: f64) -> PlaneBatch {
         PlaneBatch {

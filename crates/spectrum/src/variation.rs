@@ -55,7 +55,7 @@ impl WindowedMean {
     }
 }
 
-/// Returns the transform of a window at the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
+/// The transform of a window at the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
 pub(crate) fn transform(window: &Window, grid: &SliceGrid) -> Array3<f64> {
     let shape = grid.half_shape();
     let [azimuths, rho, nu] = shape;

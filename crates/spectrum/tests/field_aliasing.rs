@@ -24,7 +24,7 @@ fn small(window: &Window) -> FieldGrid {
     }
 }
 
-/// Returns the largest ratio of |grid − direct sum| to the bound, over all frequencies below
+/// The largest ratio of |grid − direct sum| to the bound, over all frequencies below
 /// Nyquist in one half of the spectrum.
 fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     let grid = spectrum.grid;

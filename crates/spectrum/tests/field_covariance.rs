@@ -9,7 +9,7 @@ use etendue_spectrum::field::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Returns a window with a Gaussian profile of variance w²/2π along each axis.
+/// A window with a Gaussian profile of variance w²/2π along each axis.
 fn window() -> Window {
     let gaussian = |width: f64, cut: f64| Profile::Gaussian { width, cut };
     Window {
@@ -78,7 +78,7 @@ impl PhotonSource for Gaussian {
     }
 }
 
-/// Returns three entries of 1/8π² S⁻¹ for the windowed field over (x, u) or (y, v): position and
+/// Three entries of 1/8π² S⁻¹ for the windowed field over (x, u) or (y, v): position and
 /// position, position and slope, slope and slope.
 fn expected(axis: usize) -> [f64; 3] {
     let window = window();
@@ -106,7 +106,7 @@ fn measured(seed: u64, each: u64) -> FieldMeasurement {
     measure_field(&source, 0, &at(), 0..16, &options, &|_| ()).unwrap()
 }
 
-/// Returns the known covariance: the entries ρx², ρx νu and νu², and the corresponding entries
+/// The known covariance: the entries ρx², ρx νu and νu², and the corresponding entries
 /// along y. All other entries of the covariance are zero.
 fn known() -> [[f64; 4]; 4] {
     let mut matrix = [[0.0; 4]; 4];
@@ -193,13 +193,13 @@ fn few_photons_have_no_bias() {
     }
 }
 
-/// Returns the moments of |ℓ̂|² over the same band, including noise.
+/// The moments of |ℓ̂|² over the same band, including noise.
 fn with_noise(spectrum: &FieldSpectrum) -> etendue_spectrum::field::PowerMoments {
     let moments = Moments::new(spectrum.grid, &at().grid);
     moments.of(|index| spectrum.values[index].norm_sqr())
 }
 
-/// Returns the moments of the spectrum of the windowed field, exp(−2π² Ωᵀ S Ω) times its integral.
+/// The moments of the spectrum of the windowed field, exp(−2π² Ωᵀ S Ω) times its integral.
 fn exact_moments() -> etendue_spectrum::field::PowerMoments {
     let grid = FieldOptions {
         covariance: true,

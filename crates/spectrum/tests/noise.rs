@@ -10,7 +10,7 @@ use etendue_transform::random::{self, Stream};
 use ndarray::{Axis, Slice};
 use std::f64::consts::TAU;
 
-/// Returns a measurement at azimuth 0 of photons that are uniform in a box one period wide: their
+/// A measurement at azimuth 0 of photons that are uniform in a box one period wide: their
 /// spectrum has no structure, only noise.
 fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     let window = boxed();

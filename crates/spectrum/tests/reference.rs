@@ -74,7 +74,7 @@ fn gaussian(Widths { a, b }: &Widths, z: &TwoPlane) -> f64 {
 const LARGEST: f64 = 0.202_085_963_050_424_1;
 const TOLERANCE: f64 = 1e-9 * LARGEST;
 
-/// Returns a measurement with one batch for each replicate, at a single frequency.
+/// A measurement with one batch for each replicate, at a single frequency.
 fn measurement(values: &[Complex]) -> Measurement {
     let none = FrequencyAxis {
         half: 0,

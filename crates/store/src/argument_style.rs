@@ -15,7 +15,7 @@ pub enum ArgumentStyle {
 }
 
 impl ArgumentStyle {
-    /// Returns the text for the argument with this name, without a value.
+    /// The text for the argument with this name, without a value.
     #[must_use]
     pub fn name(self, name: &str) -> String {
         match self {
@@ -24,7 +24,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the text for the argument with this name and a value.
+    /// The text for the argument with this name and a value.
     #[must_use]
     pub fn with(self, name: &str, value: impl Display) -> String {
         match self {
@@ -33,7 +33,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the text for the argument that sets a field of a scene.
+    /// The text for the argument that sets a field of a scene.
     #[must_use]
     pub fn set(self, path: &str, value: &str) -> String {
         match self {
@@ -42,7 +42,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the message for a fault in an argument that sets fields of a scene.
+    /// The message for a fault in an argument that sets fields of a scene.
     #[must_use]
     pub fn in_set(self, fault: impl Display) -> String {
         match self {
@@ -51,7 +51,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the text for the argument that allows replacing files that Étendue did not write.
+    /// The text for the argument that allows replacing files that Étendue did not write.
     #[must_use]
     pub fn force(self) -> &'static str {
         match self {
@@ -60,7 +60,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the advice to name another folder.
+    /// The advice to name another folder.
     #[must_use]
     pub fn another_folder(self) -> &'static str {
         match self {

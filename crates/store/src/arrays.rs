@@ -45,7 +45,7 @@ pub struct SliceArrays {
 }
 
 impl SliceArrays {
-    /// Returns the slices of a plane.
+    /// The slices of a plane.
     #[must_use]
     pub fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
@@ -90,7 +90,7 @@ fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
         .bytes()
 }
 
-/// Returns the measured minus the predicted radial power, divided by its standard deviation if the
+/// The measured minus the predicted radial power, divided by its standard deviation if the
 /// prediction is true.
 pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     z(
@@ -108,7 +108,7 @@ pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -
     z
 }
 
-/// Returns an OpenEXR file of four parts, with ρ to the right and ν upwards.
+/// An OpenEXR file of four parts, with ρ to the right and ν upwards.
 fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;

@@ -29,7 +29,7 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/batches.npz", plane.name)
 }
 
-/// Returns the names of the files of a measurement.
+/// The names of the files of a measurement.
 pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     let each = planes.iter().map(file_of);
     each.chain([LEDGER.to_owned()]).collect()
@@ -43,7 +43,7 @@ pub fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Fai
         .try_for_each(|(name, bytes)| results.write(&name, &bytes))
 }
 
-/// Returns the files of some batches at `planes`: name and content of each.
+/// The files of some batches at `planes`: name and content of each.
 pub fn files(
     planes: &[VirtualPlane],
     batches: &[&Batch],
@@ -67,7 +67,7 @@ pub fn files(
         .collect()
 }
 
-/// Returns a new file with an array of the numbers of the batches. Each row of later arrays belongs
+/// A new file with an array of the numbers of the batches. Each row of later arrays belongs
 /// to one of these batches.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();

@@ -38,7 +38,7 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// Returns the batches of a run with results in `out`. The batches belong to this scene,
+    /// The batches of a run with results in `out`. The batches belong to this scene,
     /// method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
@@ -52,25 +52,25 @@ impl CheckpointStore {
         }
     }
 
-    /// Returns the folder of the batches, for messages.
+    /// The folder of the batches, for messages.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Returns the number of finished batches, and the number of batches that are begun.
+    /// The number of finished batches, and the number of batches that are begun.
     pub fn count(&self) -> [usize; 2] {
         let found = self.furthest();
         let done = found.values().filter(|name| name.parts.is_none()).count();
         [done, found.len() - done]
     }
 
-    /// Returns the progress of a batch; `None` if it is not begun.
+    /// The progress of a batch; `None` if it is not begun.
     pub fn progress(&self, batch: u32) -> Option<BatchProgress> {
         let parts = self.furthest().remove(&batch)?.parts;
         Some(parts.map_or(BatchProgress::Done, BatchProgress::Parts))
     }
 
-    /// Returns the file with the most parts for each batch.
+    /// The file with the most parts for each batch.
     fn furthest(&self) -> BTreeMap<u32, CheckpointName> {
         let mut furthest = BTreeMap::new();
         for name in self.names() {
@@ -203,7 +203,7 @@ impl CheckpointStore {
     }
 }
 
-/// Returns a batch as the bytes of its file.
+/// A batch as the bytes of its file.
 pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
@@ -216,7 +216,7 @@ pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure
     Ok(archive.finish().map_err(Failure::cannot_run)?.into_inner())
 }
 
-/// Returns the batch described by `held`, from the bytes of its file.
+/// The batch described by `held`, from the bytes of its file.
 pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Batch, Failure> {
     let open = |name: &str| {
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;

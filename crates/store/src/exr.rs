@@ -19,7 +19,7 @@ pub struct Part {
     pub samples: Vec<f32>,
 }
 
-/// Returns the bytes of a file; `provenance` is an attribute of each part.
+/// The bytes of a file; `provenance` is an attribute of each part.
 pub fn exr(
     [width, height]: [usize; 2],
     parts: Vec<Part>,
@@ -52,7 +52,7 @@ pub fn exr(
     Ok(bytes.into_inner())
 }
 
-/// Returns all provenance as one attribute, because several attributes would be written in random
+/// All provenance as one attribute, because several attributes would be written in random
 /// order.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
     // OpenEXR stores text as Latin-1, so characters other than ASCII are written as JSON escapes.

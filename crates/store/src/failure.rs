@@ -24,7 +24,7 @@ pub enum FailureKind {
 }
 
 impl Failure {
-    /// Returns the failure for wrong input of the user.
+    /// The failure for wrong input of the user.
     pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -32,7 +32,7 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for a request that cannot be carried out on this machine.
+    /// The failure for a request that cannot be carried out on this machine.
     pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -40,7 +40,7 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for a scene that is invalid, or valid but too large for this machine.
+    /// The failure for a scene that is invalid, or valid but too large for this machine.
     pub fn of_scene(error: &SceneError, message: impl Display) -> Self {
         match error {
             SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
@@ -50,7 +50,7 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for a result file or folder `path` that could not be written.
+    /// The failure for a result file or folder `path` that could not be written.
     pub fn write(path: &Path, reason: impl Display) -> Self {
         Self::cannot_run(format!("cannot write {}: {reason}", path.display()))
     }

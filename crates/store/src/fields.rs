@@ -12,7 +12,7 @@ pub struct FieldChange {
     pub values: [String; 2],
 }
 
-/// Returns all fields in which two trees differ, in the order of the first tree. A missing field
+/// All fields in which two trees differ, in the order of the first tree. A missing field
 /// counts as null, and another variant as one difference.
 pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     let mut found = Vec::new();
@@ -20,7 +20,7 @@ pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     found
 }
 
-/// Returns the first field that differs.
+/// The first field that differs.
 pub fn difference(a: &Value, b: &Value) -> Option<FieldChange> {
     differences(a, b).into_iter().next()
 }
@@ -53,7 +53,7 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
     }
 }
 
-/// Returns the name and content of a variant such as `{"Disc": {…}}`.
+/// The name and content of a variant such as `{"Disc": {…}}`.
 fn variant(value: &Value) -> Option<(&str, &Value)> {
     let fields = value.as_object().filter(|fields| fields.len() == 1)?;
     let (name, content) = fields.iter().next()?;
@@ -73,7 +73,7 @@ impl FieldChange {
     }
 }
 
-/// Returns a value as text that fits in a line: `Disc(…)`, `Before("floor")`, `0.1`.
+/// A value as text that fits in a line: `Disc(…)`, `Before("floor")`, `0.1`.
 fn brief(value: &Value) -> String {
     const MAX_CHARACTERS: usize = 40;
     if let Some((name, content)) = variant(value) {

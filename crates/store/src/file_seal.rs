@@ -23,7 +23,7 @@ const LAST: usize = 12;
 const DIGITS: usize = 64;
 
 impl SealKind {
-    /// Returns the kind of a page or a picture, by the extension of its file.
+    /// The kind of a page or a picture, by the extension of its file.
     #[must_use]
     pub fn of(file: &Path) -> Option<Self> {
         match file.extension()?.to_str()? {
@@ -33,7 +33,7 @@ impl SealKind {
         }
     }
 
-    /// Returns the file with its mark.
+    /// The file with its mark.
     #[must_use]
     pub fn sealed(self, bytes: &[u8]) -> Vec<u8> {
         let hash = blake3::hash(bytes).to_hex();
@@ -65,7 +65,7 @@ impl SealKind {
     }
 }
 
-/// Returns a text chunk of a PNG: its length, kind, data and checksum.
+/// A text chunk of a PNG: its length, kind, data and checksum.
 fn chunk(data: &[u8]) -> Vec<u8> {
     let summed = [b"tEXt", data].concat();
     let length = u32::try_from(data.len()).unwrap_or(0).to_be_bytes();

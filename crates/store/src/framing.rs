@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Returns the length of the words, the words, and the bytes.
+/// The length of the words, the words, and the bytes.
 pub fn joined(words: &impl Serialize, bytes: &[u8]) -> Vec<u8> {
     let words = serde_json::to_vec(words).unwrap_or_default();
     let length = (words.len() as u64).to_le_bytes();

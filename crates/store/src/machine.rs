@@ -6,7 +6,7 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the memory that this process may still allocate without swapping, in bytes. The memory
+/// The memory that this process may still allocate without swapping, in bytes. The memory
 /// is limited by the machine, by the control groups of the process, and by the limits of the
 /// process (`ulimit -v`, `ulimit -d`).
 pub fn available_memory() -> u64 {
@@ -34,7 +34,7 @@ pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Resu
     })
 }
 
-/// Returns the peak memory of this process, in bytes.
+/// The peak memory of this process, in bytes.
 pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM:")
 }
@@ -51,14 +51,14 @@ pub fn ignores(signal: i32) -> bool {
     read().unwrap_or(false)
 }
 
-/// Returns the remaining memory of each control group (version 1 or 2) that contains this process.
+/// The remaining memory of each control group (version 1 or 2) that contains this process.
 fn control_groups() -> impl Iterator<Item = u64> {
     let text = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let groups: Vec<PathBuf> = text.lines().flat_map(folders).collect();
     groups.into_iter().filter_map(|folder| left_in(&folder))
 }
 
-/// Returns the folders of a control group and of the groups that contain it. `line` has the form
+/// The folders of a control group and of the groups that contain it. `line` has the form
 /// `number:controllers:path`.
 fn folders(line: &str) -> Vec<PathBuf> {
     let mut parts = line.splitn(3, ':').skip(1);
@@ -74,7 +74,7 @@ fn folders(line: &str) -> Vec<PathBuf> {
     ancestors.map(|path| Path::new(root).join(path)).collect()
 }
 
-/// Returns the limit of a control group minus its usage. Memory of cached files counts as free,
+/// The limit of a control group minus its usage. Memory of cached files counts as free,
 /// because the system can evict it.
 fn left_in(folder: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
@@ -85,7 +85,7 @@ fn left_in(folder: &Path) -> Option<u64> {
     Some(limit.saturating_sub(used.saturating_sub(cached.unwrap_or(0))))
 }
 
-/// Returns a limit of this process, in bytes; `None` if there is none.
+/// A limit of this process, in bytes; `None` if there is none.
 fn limit(name: &str) -> Option<u64> {
     let text = fs::read_to_string("/proc/self/limits").ok()?;
     field(&text, name)?.parse().ok()
@@ -98,7 +98,7 @@ fn kilobytes(file: &str, name: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// Returns the first word after a name at the beginning of a line.
+/// The first word after a name at the beginning of a line.
 fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.split_whitespace().next()

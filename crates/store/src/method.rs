@@ -25,7 +25,7 @@ impl Method {
         }
     }
 
-    /// Returns the name of the method in commands.
+    /// The name of the method in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -35,7 +35,7 @@ impl Method {
         }
     }
 
-    /// Returns the words for what the method traces.
+    /// The words for what the method traces.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {

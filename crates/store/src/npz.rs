@@ -96,7 +96,7 @@ where
 pub struct Npz(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Default for Npz {
-    /// Returns a file without arrays.
+    /// A file without arrays.
     fn default() -> Self {
         Self(ZipWriter::new(Cursor::new(Vec::new())))
     }
@@ -127,7 +127,7 @@ impl Npz {
         axes.try_fold(self, |npz, (name, values)| npz.add(name, &values))
     }
 
-    /// Returns the bytes of the file.
+    /// The bytes of the file.
     pub fn bytes(self) -> Result<Vec<u8>, Failure> {
         let finished = self.0.finish().map_err(Failure::cannot_run)?;
         Ok(finished.into_inner())
@@ -137,7 +137,7 @@ impl Npz {
 /// Arrays with more bytes than this limit need the 64-bit fields of ZIP, which NumPy can read.
 const MAX_SMALL_FILE: usize = 1 << 31;
 
-/// Returns the axes of arrays [azimuth, ρ ≥ 0, ν].
+/// The axes of arrays [azimuth, ρ ≥ 0, ν].
 fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
     let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
     [
@@ -166,7 +166,7 @@ impl fmt::Debug for NpzFile {
 const HEADER: usize = 1 << 16;
 
 impl NpzFile {
-    /// Returns the file with these bytes. Messages name the file as `path`.
+    /// The file with these bytes. Messages name the file as `path`.
     pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
         let archive = ZipArchive::new(Cursor::new(bytes))
@@ -178,7 +178,7 @@ impl NpzFile {
         })
     }
 
-    /// Returns the array `name`, in C order. The array must have the given shape and hold finite
+    /// The array `name`, in C order. The array must have the given shape and hold finite
     /// numbers.
     pub fn array<A: Number, I: IntoDimension>(
         &mut self,
@@ -206,7 +206,7 @@ impl NpzFile {
         })
     }
 
-    /// Returns the numbers of an axis, of any length.
+    /// The numbers of an axis, of any length.
     pub fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
         // Uncompressed data are no larger than the file.
         let (found, numbers) = self.numbers(name, self.length)?;
@@ -225,7 +225,7 @@ impl NpzFile {
         numbers <= self.length / size_of::<f64>()
     }
 
-    /// Returns the finite numbers of an array that needs at most `bytes`, in the order of the file.
+    /// The finite numbers of an array that needs at most `bytes`, in the order of the file.
     fn numbers<A: Number>(
         &mut self,
         name: &str,
@@ -280,13 +280,13 @@ impl NpzFile {
         Ok(())
     }
 
-    /// Returns the message for a fault of array `name`.
+    /// The message for a fault of array `name`.
     pub fn fault(&self, name: &str, what: impl Display) -> Failure {
         let path = self.path.display();
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// Returns the NPY file `name` in the archive. The number of unpacked bytes is at most the sum
+    /// The NPY file `name` in the archive. The number of unpacked bytes is at most the sum
     /// of `numbers`, the size of the archive and the size of a header.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
@@ -304,7 +304,7 @@ impl NpzFile {
     }
 }
 
-/// Returns the azimuths of slices.
+/// The azimuths of slices.
 pub(super) fn azimuths(grid: &SliceGrid) -> Array1<f64> {
     (0..grid.azimuths).map(|k| grid.azimuth(k)).collect()
 }

@@ -49,7 +49,7 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/prediction.npz", plane.name)
 }
 
-/// Returns the names of the files of a prediction.
+/// The names of the files of a prediction.
 pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
@@ -71,20 +71,20 @@ pub fn write(
     Ok(StoredPrediction { method, planes })
 }
 
-/// Returns a prediction as bytes, for another process.
+/// A prediction as bytes, for another process.
 pub fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
     let (words, bytes) = stored(plane, prediction)?;
     Ok(joined(&words, &bytes))
 }
 
-/// Returns the prediction of a plane from bytes of [`packed`].
+/// The prediction of a plane from bytes of [`packed`].
 pub fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
     let (words, bytes): (PredictedPlane, _) = split(bytes).map_err(Failure::cannot_run)?;
     let file = NpzFile::new(PathBuf::from(file_of(plane)), bytes.to_vec())?;
     read_plane(file, plane, &words)
 }
 
-/// Returns the text of a prediction, and the bytes of its file of arrays.
+/// The text of a prediction, and the bytes of its file of arrays.
 fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,
@@ -146,7 +146,7 @@ fn stored(
     Ok((words, bytes))
 }
 
-/// Returns slices as one array, [slices, azimuth, ρ ≥ 0, ν].
+/// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
 fn stacked<'a>(
     grid: &SliceGrid,
     all: impl IntoIterator<Item = &'a Slices, IntoIter: ExactSizeIterator>,

@@ -102,7 +102,7 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Returns a message that lists the replaced files that etendue did not write, if there are
+    /// A message that lists the replaced files that etendue did not write, if there are
     /// any.
     #[must_use]
     pub fn replaced_message(&self) -> Option<String> {
@@ -263,24 +263,24 @@ impl Results {
         })
     }
 
-    /// Returns the names of all files to be written.
+    /// The names of all files to be written.
     fn planned(&self) -> impl Iterator<Item = &str> {
         let files = self.plan.files.iter().map(String::as_str);
         files.chain([self.plan.index])
     }
 
-    /// Returns the temporary path of a new file.
+    /// The temporary path of a new file.
     fn staged(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("new").join(name)
     }
 
-    /// Returns the temporary path that a new index has after all files are complete. From then on,
+    /// The temporary path that a new index has after all files are complete. From then on,
     /// the files begin to move.
     fn ready(&self, index: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join(index)
     }
 
-    /// Returns the index of the files that have begun to move, if there are any.
+    /// The index of the files that have begun to move, if there are any.
     fn ready_index(&self) -> Option<&'static str> {
         let mut indices = [
             SUMMARY,
@@ -330,7 +330,7 @@ pub(crate) fn remove_folders(folders: &Vec<PathBuf>) {
     }
 }
 
-/// Returns the path of the folder `name` inside `out`. Fails if this path leads out of `out`,
+/// The path of the folder `name` inside `out`. Fails if this path leads out of `out`,
 /// through `..` or through a link.
 pub fn below(out: &Path, name: &str) -> Result<PathBuf, Failure> {
     let folder = out.join(name);
@@ -340,7 +340,7 @@ pub fn below(out: &Path, name: &str) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Returns the path of a file of a folder. Returns `None` if the path leads out of the folder,
+/// The path of a file of a folder. Returns `None` if the path leads out of the folder,
 /// through `..` or through a link.
 pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
@@ -361,7 +361,7 @@ pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// Returns the files that an index lists, with their hashes. Returns `None` if the index was
+/// The files that an index lists, with their hashes. Returns `None` if the index was
 /// changed after Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
@@ -373,7 +373,7 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
         .collect()
 }
 
-/// Returns the hash of a file, as listed in the index of a complete result.
+/// The hash of a file, as listed in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }
@@ -393,7 +393,7 @@ fn has_hash(path: &Path, hash: &str) -> bool {
     is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
 }
 
-/// Returns the content of a regular file that ends with its own hash.
+/// The content of a regular file that ends with its own hash.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
     regular_bytes(path).filter(|bytes| sealed::is_sealed(bytes))
 }
@@ -413,7 +413,7 @@ fn regular_bytes(path: &Path) -> Option<Vec<u8>> {
     is_regular(path).then(bytes).flatten()
 }
 
-/// Returns the folders, below the results folder, that hold these files.
+/// The folders, below the results folder, that hold these files.
 fn parents<'a>(names: impl Iterator<Item = &'a String>) -> BTreeSet<&'a Path> {
     let ancestors = names.flat_map(|name| Path::new(name).ancestors().skip(1));
     ancestors

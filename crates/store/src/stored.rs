@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Returns the path at which a stage keeps a copy of a mesh or picture, beside the index called
+/// The path at which a stage keeps a copy of a mesh or picture, beside the index called
 /// `index`.
 pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
@@ -41,7 +41,7 @@ pub struct Index<T> {
 }
 
 impl<T: Serialize> Index<T> {
-    /// Returns the index of a stage for a scene.
+    /// The index of a stage for a scene.
     pub fn new(scene: &Scene, content: T) -> Self {
         Self {
             scene: scene.name.clone(),
@@ -109,7 +109,7 @@ impl<T: DeserializeOwned> Stored<T> {
 }
 
 impl<T> Stored<T> {
-    /// Returns the scene of the stage; its meshes and pictures are the stage's own copies.
+    /// The scene of the stage; its meshes and pictures are the stage's own copies.
     pub fn scene(&self) -> Result<Scene, Failure> {
         let Index {
             scene,
@@ -137,18 +137,18 @@ impl<T> Stored<T> {
         names.try_for_each(|name| self.bytes(&copy_of(self.name, name)).map(drop))
     }
 
-    /// Returns the paths of the index and of all files it lists.
+    /// The paths of the index and of all files it lists.
     pub fn paths(&self) -> Vec<PathBuf> {
         let files = self.index.files.keys().map(|name| self.folder.join(name));
         files.chain([self.path.clone()]).collect()
     }
 
-    /// Returns the arrays in the file `name`.
+    /// The arrays in the file `name`.
     pub fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
         NpzFile::new(self.folder.join(name), self.bytes(name)?)
     }
 
-    /// Returns the file `name`, whose bytes must be unchanged.
+    /// The file `name`, whose bytes must be unchanged.
     fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
         listed_bytes(&self.folder, self.name, &self.index.files, name)
     }
@@ -188,13 +188,13 @@ impl<T> Stored<T> {
         )))
     }
 
-    /// Returns the message for a fault of the index.
+    /// The message for a fault of the index.
     pub fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
 }
 
-/// Returns the file `name` of a folder. The hash of its bytes must equal the hash in `files`, which
+/// The file `name` of a folder. The hash of its bytes must equal the hash in `files`, which
 /// comes from the index called `index`.
 pub fn listed_bytes(
     folder: &Path,
@@ -216,7 +216,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// Returns the summary of a run if the run had exactly this scene, method and version.
+/// The summary of a run if the run had exactly this scene, method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;

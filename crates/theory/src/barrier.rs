@@ -47,7 +47,7 @@ impl<'a> Barrier<'a> {
         }
     }
 
-    /// Returns the disc outside which the mask is opaque, if the mask is an aperture with a disc as
+    /// The disc outside which the mask is opaque, if the mask is an aperture with a disc as
     /// its hole.
     pub(crate) fn disc_hole(&self) -> Option<&Shape> {
         match self.mask {
@@ -56,7 +56,7 @@ impl<'a> Barrier<'a> {
         }
     }
 
-    /// Returns the smallest width among the shapes or of the hole, or `None` if there is neither.
+    /// The smallest width among the shapes or of the hole, or `None` if there is neither.
     pub(crate) fn narrowest(&self) -> Option<f64> {
         match self.mask {
             Mask::Aperture(hole) => {
@@ -67,7 +67,7 @@ impl<'a> Barrier<'a> {
         }
     }
 
-    /// Returns the fraction of radiance that passes the mask at (x, y).
+    /// The fraction of radiance that passes the mask at (x, y).
     pub(crate) fn transmittance(&self, x: f64, y: f64) -> f64 {
         if !matches!(self.mask, Mask::Opaque { .. }) {
             return self.mask.transmittance(x, y);
@@ -123,7 +123,7 @@ impl<'a> Bins<'a> {
         bins
     }
 
-    /// Returns the smallest width among all shapes, or `None` if there are no shapes.
+    /// The smallest width among all shapes, or `None` if there are no shapes.
     fn narrowest(&self) -> Option<f64> {
         let widths = self.shapes.iter().map(|shape| {
             let [w, h] = shape.bounds().size;
@@ -132,7 +132,7 @@ impl<'a> Bins<'a> {
         widths.min_by(f64::total_cmp)
     }
 
-    /// Returns the range of cells that an interval along an axis overlaps; the outermost cells
+    /// The range of cells that an interval along an axis overlaps; the outermost cells
     /// extend to infinity.
     fn touched(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::RangeInclusive<usize> {
         self.cell(axis, low)..=self.cell(axis, high)
@@ -172,7 +172,7 @@ impl<'a> Bins<'a> {
     }
 }
 
-/// Returns the numbers of cells along two axes, with about `count` cells in all. There are at most
+/// The numbers of cells along two axes, with about `count` cells in all. There are at most
 /// about as many along an axis as shapes fit side by side, which `abreast` gives.
 fn sides(count: usize, abreast: [f64; 2]) -> [usize; 2] {
     let count = count.max(1) as f64;

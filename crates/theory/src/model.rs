@@ -11,17 +11,17 @@ pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
 
 /// A model that predicts the light field at a plane.
 pub trait Model: Clone {
-    /// Returns the light source.
+    /// The light source.
     fn light(&self) -> &Light;
 
-    /// Returns the parameters that can be estimated from a measurement, in the order of
+    /// The parameters that can be estimated from a measurement, in the order of
     /// propagation.
     fn parameters(&self) -> Vec<Parameter>;
 
     /// Leaves out parameters whose derivatives would take too long, beginning with the last.
     fn keep_affordable(&self, _parameters: &mut Vec<Parameter>, _budget: RayBudget) {}
 
-    /// Returns the readable name of a parameter, e.g. "travel light to blockers".
+    /// The readable name of a parameter, e.g. "travel light to blockers".
     fn name(&self, parameter: Parameter) -> String;
 
     /// Replaces the value of a parameter by `new(value)`. Returns `None` if the model does not have
@@ -39,12 +39,12 @@ pub trait Model: Clone {
     /// Estimates the work of a prediction.
     fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork;
 
-    /// Returns the unit of a parameter, or an empty string for a dimensionless parameter.
+    /// The unit of a parameter, or an empty string for a dimensionless parameter.
     fn unit(&self, parameter: Parameter) -> &'static str {
         parameter.unit(self.light())
     }
 
-    /// Returns the value of a parameter, in its unit. Returns `None` as for
+    /// The value of a parameter, in its unit. Returns `None` as for
     /// [`change`](Self::change).
     fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut value = None;
@@ -55,7 +55,7 @@ pub trait Model: Clone {
         value
     }
 
-    /// Returns the model with another value of a parameter, in its unit. Returns `None` as for
+    /// The model with another value of a parameter, in its unit. Returns `None` as for
     /// [`change`](Self::change).
     fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut other = self.clone();
@@ -63,7 +63,7 @@ pub trait Model: Clone {
         Some(other)
     }
 
-    /// Returns the step of a finite difference: `relative` times the scale of the parameter, but not
+    /// The step of a finite difference: `relative` times the scale of the parameter, but not
     /// so large that the phases of the highest frequencies change by more than `turns` turns.
     fn step(
         &self,
@@ -105,7 +105,7 @@ pub(crate) const STEPS_OF_EDGES: [f64; 2] = [5e-2, 0.05];
 const MAX_HALVINGS: usize = 10;
 
 impl<M: Model> ShiftedModels<M> {
-    /// Returns the models with a parameter increased and decreased by a small step.
+    /// The models with a parameter increased and decreased by a small step.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
         let step = STEP * parameter.scale(model.value(parameter)?);
         Self::new(model, parameter, step, |moved| moved)

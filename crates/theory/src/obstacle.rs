@@ -15,7 +15,7 @@ pub(crate) struct LegRay {
 }
 
 impl LegRay {
-    /// Returns the ray with position (x, y) and slopes (u, v) at the light's plane.
+    /// The ray with position (x, y) and slopes (u, v) at the light's plane.
     pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
         Self {
             point: DVec3::new(x, y, 0.0),
@@ -23,7 +23,7 @@ impl LegRay {
         }
     }
 
-    /// Returns the line through a point along a unit vector. The line starts beyond all its
+    /// The line through a point along a unit vector. The line starts beyond all its
     /// intersections with a patch.
     pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
         let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
@@ -37,12 +37,12 @@ impl LegRay {
         self.point + distance * self.direction
     }
 
-    /// Returns the distance below which an intersection is the point where the leg starts.
+    /// The distance below which an intersection is the point where the leg starts.
     pub(crate) fn start(&self) -> f64 {
         ROUNDING * self.point.length()
     }
 
-    /// Returns the distance to the first intersection with a patch, and the patch's unit normal
+    /// The distance to the first intersection with a patch, and the patch's unit normal
     /// there, on the side of the patch's D.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         let start = self.start();
@@ -51,7 +51,7 @@ impl LegRay {
         Some((first, normal(patch, self.at(first))?))
     }
 
-    /// Returns the intersection at which the ray meets a patch from the given side, even if
+    /// The intersection at which the ray meets a patch from the given side, even if
     /// another intersection is nearer. `side` is 1 for the side of the patch's D and −1 for the
     /// opposite side.
     ///
@@ -62,7 +62,7 @@ impl LegRay {
         met.find(|(_, normal)| side * normal.dot(self.direction) < 0.0)
     }
 
-    /// Returns the distances to the intersections of the ray's line with a patch, in any order.
+    /// The distances to the intersections of the ray's line with a patch, in any order.
     pub(crate) fn hits(&self, patch: &Patch) -> impl Iterator<Item = f64> + use<> {
         let point = patch.frame.to_local(self.point);
         let direction = patch.frame.vector_to_local(self.direction);
@@ -89,7 +89,7 @@ impl LegRay {
     }
 }
 
-/// Returns the unit normal of a patch at one of its points, on the side of the patch's D.
+/// The unit normal of a patch at one of its points, on the side of the patch's D.
 pub(crate) fn normal(patch: &Patch, point: DVec3) -> Option<DVec3> {
     let gradient = patch
         .gradient(patch.frame.to_local(point))
@@ -156,7 +156,7 @@ impl Obstacle {
 }
 
 impl ObstacleForm {
-    /// Returns the form of triangles, of which there is at least one.
+    /// The form of triangles, of which there is at least one.
     #[must_use]
     pub fn mesh(triangles: Vec<[DVec3; 3]>) -> Self {
         Self::Mesh {
@@ -165,7 +165,7 @@ impl ObstacleForm {
         }
     }
 
-    /// Returns the number of sizes: two for a rectangle, one for a patch, none for a mesh.
+    /// The number of sizes: two for a rectangle, one for a patch, none for a mesh.
     pub(crate) fn sizes(&self) -> usize {
         match self {
             Self::Rectangle { .. } => 2,
@@ -205,7 +205,7 @@ pub(crate) struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// Returns a sphere about points, of which there is at least one.
+    /// A sphere about points, of which there is at least one.
     pub(crate) fn new(points: &[DVec3]) -> Self {
         let [low, high] = enclosing(points);
         let center = 0.5 * (low + high);
@@ -286,7 +286,7 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {
     is_inside.then_some(t)
 }
 
-/// Returns the distance along a ray to a triangle. The ray meets the triangle if the three volumes
+/// The distance along a ray to a triangle. The ray meets the triangle if the three volumes
 /// that the ray spans with the edges have the same sign (Plücker coordinates).
 fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
     let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);

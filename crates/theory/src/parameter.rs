@@ -69,7 +69,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Returns the parameters of a light.
+    /// The parameters of a light.
     pub(crate) fn of_light(light: &Light) -> Vec<Self> {
         match light {
             Light::Area {
@@ -86,7 +86,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the index of the mask to which the parameter belongs, or `None` if it has no mask.
+    /// The index of the mask to which the parameter belongs, or `None` if it has no mask.
     pub(crate) fn mask(self) -> Option<usize> {
         match self {
             Self::BlockerSide(i, ..)
@@ -117,7 +117,7 @@ impl Parameter {
         )
     }
 
-    /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
+    /// The unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
             Self::ImageWidth(_) if matches!(light, Light::Projector { .. }) => "",
@@ -140,7 +140,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the scale of the parameter. A change of the parameter is small if it is small
+    /// The scale of the parameter. A change of the parameter is small if it is small
     /// compared with this scale.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
@@ -159,7 +159,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the readable name of a light's parameter; `name` is the name of the light.
+    /// The readable name of a light's parameter; `name` is the name of the light.
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
         match (self, light) {
             (Self::SourceSize(axis), Light::Area { shape, .. }) => {
@@ -193,7 +193,7 @@ impl Parameter {
         Some(())
     }
 
-    /// Returns the parameters of a mask; `index` is the index of its operator.
+    /// The parameters of a mask; `index` is the index of its operator.
     pub(crate) fn of_mask(mask: &Mask, index: usize) -> Vec<Self> {
         let shapes = shapes_of(mask);
         let groups = shapes.chunks(group_size(shapes)).enumerate();
@@ -225,7 +225,7 @@ impl Parameter {
         of_shapes.chain(others).collect()
     }
 
-    /// Returns the readable name of a mask's parameter; `name` is the name of the mask.
+    /// The readable name of a mask's parameter; `name` is the name of the mask.
     pub(crate) fn name_of_mask(self, mask: &Mask, name: &str) -> Option<String> {
         let shapes = shapes_of(mask);
         let size = group_size(shapes);
@@ -307,7 +307,7 @@ pub(crate) fn position(axis: usize, name: &str) -> String {
     format!("position {} of {name}", ["x", "y", "z"][axis])
 }
 
-/// Returns the name of a side or of the aperture of an object.
+/// The name of a side or of the aperture of an object.
 pub(crate) fn size_of_rim(is_rectangle: bool, axis: usize, name: &str) -> String {
     match is_rectangle {
         true => format!("side {} of {name}", ["x", "y"][axis]),
@@ -315,7 +315,7 @@ pub(crate) fn size_of_rim(is_rectangle: bool, axis: usize, name: &str) -> String
     }
 }
 
-/// Returns the axes of the curvatures of a patch that are parameters; equal curvatures are a
+/// The axes of the curvatures of a patch that are parameters; equal curvatures are a
 /// single parameter.
 pub(crate) fn curvatures(patch: &Patch) -> Vec<usize> {
     let [k1, k2, _] = patch.curvature;
@@ -352,7 +352,7 @@ const MAX_SEPARATE: usize = 4;
 /// The largest number of corners of a polygonal hole that are parameters.
 const MAX_CORNERS: usize = 8;
 
-/// Returns the shapes of a mask or of its hole; none for a polygon or a grating.
+/// The shapes of a mask or of its hole; none for a polygon or a grating.
 pub(crate) fn shapes_of(mask: &Mask) -> &[Shape] {
     match mask {
         Mask::Opaque { shapes, .. } => shapes,
@@ -361,7 +361,7 @@ pub(crate) fn shapes_of(mask: &Mask) -> &[Shape] {
     }
 }
 
-/// Returns how many shapes of a mask share their parameters.
+/// How many shapes of a mask share their parameters.
 fn group_size(shapes: &[Shape]) -> usize {
     if shapes.len() > MAX_SEPARATE {
         shapes.len()
@@ -378,7 +378,7 @@ fn ends(shape: &Shape, axis: usize) -> bool {
     }
 }
 
-/// Returns the axes of the sizes of shapes: one for each side of a single rectangle, and otherwise
+/// The axes of the sizes of shapes: one for each side of a single rectangle, and otherwise
 /// one.
 fn size_axes(shapes: &[Shape]) -> Vec<usize> {
     let axes = [0, 1].into_iter();
@@ -389,7 +389,7 @@ fn size_axes(shapes: &[Shape]) -> Vec<usize> {
     }
 }
 
-/// Returns the word for the size of shapes along an axis.
+/// The word for the size of shapes along an axis.
 fn size_word(shapes: &[Shape], axis: usize) -> &'static str {
     match shapes {
         [Shape::Disc(_), ..] => "radius",
@@ -431,7 +431,7 @@ fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
     }
 }
 
-/// Returns the axes along which a displacement of the shapes changes the light: all axes along
+/// The axes along which a displacement of the shapes changes the light: all axes along
 /// which a shape ends.
 fn movable_axes(shapes: &[Shape]) -> Vec<usize> {
     let axes = [0, 1].into_iter();

@@ -45,7 +45,7 @@ pub struct Predicted {
 }
 
 impl Predicted {
-    /// Returns a prediction without an error, moments or derivatives, which is no sum over nets.
+    /// A prediction without an error, moments or derivatives, which is no sum over nets.
     pub(crate) fn exact(slices: Slices, projection: Projection) -> Self {
         Self {
             slices,
@@ -60,7 +60,7 @@ impl Predicted {
         }
     }
 
-    /// Returns this prediction minus another one from the same nets, as a mean over the nets.
+    /// This prediction minus another one from the same nets, as a mean over the nets.
     /// Returns `None` if a prediction is no sum over nets.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Option<NetMean> {

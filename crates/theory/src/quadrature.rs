@@ -2,7 +2,7 @@
 
 pub(crate) use etendue_transform::gauss_legendre;
 
-/// Returns ∫ f over (low, high), with n nodes.
+/// ∫ f over (low, high), with n nodes.
 pub(crate) fn integrate<T>(n: usize, [low, high]: [f64; 2], f: impl Fn(f64) -> T) -> T
 where
     T: std::iter::Sum + std::ops::Mul<f64, Output = T>,

@@ -41,7 +41,7 @@ pub(crate) struct Pixels<'a> {
 const GRAZING: f64 = 0.05;
 
 impl<'a> SkyDensity<'a> {
-    /// Returns the density for a surface with this normal, which is given in the frame at the
+    /// The density for a surface with this normal, which is given in the frame at the
     /// light. Returns `None` if the environment is dark.
     pub(crate) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
         match &environment.map {
@@ -86,7 +86,7 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Returns the density of a direction per steradian, given the radiance from this direction.
+    /// The density of a direction per steradian, given the radiance from this direction.
     pub(crate) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
             Self::Lobes(lobes) => radiance / lobes.total,
@@ -155,17 +155,17 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// Returns the latitude at which row j of h begins.
+/// The latitude at which row j of h begins.
 fn latitude(h: usize, j: usize) -> f64 {
     PI * (0.5 - j as f64 / h as f64)
 }
 
-/// Returns the solid angle of a row of a map, per radian of longitude.
+/// The solid angle of a row of a map, per radian of longitude.
 fn solid_angle(h: usize, j: usize) -> f64 {
     libm::sin(latitude(h, j)) - libm::sin(latitude(h, j + 1))
 }
 
-/// Returns the cumulative shares of weights; `None` if all are zero.
+/// The cumulative shares of weights; `None` if all are zero.
 fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
     let mut sum = 0.0;
     let mut sums: Vec<f64> = weights
@@ -181,7 +181,7 @@ fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
     (sum > 0.0).then_some(sums)
 }
 
-/// Returns the index of the part that contains a number in (0, 1), and the position of the number
+/// The index of the part that contains a number in (0, 1), and the position of the number
 /// within this part.
 fn picked(shares: &[f64], at: f64) -> (usize, f64) {
     let i = shares
@@ -199,7 +199,7 @@ fn picked(shares: &[f64], at: f64) -> (usize, f64) {
     )
 }
 
-/// Returns the share of one part.
+/// The share of one part.
 fn share(shares: &[f64], i: usize) -> f64 {
     shares[i] - if i == 0 { 0.0 } else { shares[i - 1] }
 }

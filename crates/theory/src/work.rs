@@ -14,7 +14,7 @@ pub struct PredictionWork {
 }
 
 impl PredictionWork {
-    /// Returns the work if no prediction is needed.
+    /// The work if no prediction is needed.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -25,7 +25,7 @@ impl PredictionWork {
         }
     }
 
-    /// Returns the work of a prediction that would take far too long. The exact amount is not
+    /// The work of a prediction that would take far too long. The exact amount is not
     /// counted.
     pub(crate) fn endless(drivers: String) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl PredictionWork {
         }
     }
 
-    /// Returns the work of two predictions, one after the other.
+    /// The work of two predictions, one after the other.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self {

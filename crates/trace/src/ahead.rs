@@ -46,7 +46,7 @@ impl AheadPool {
 pub(crate) const AHEAD: usize = 16 * BLOCK;
 
 impl Ahead {
-    /// Returns the group of photons that begins with a photon, and the obstacles that they meet;
+    /// The group of photons that begins with a photon, and the obstacles that they meet;
     /// `None` if they were not emitted.
     #[inline]
     pub(crate) fn of(&self, first: u64) -> Option<(&PhotonGroup, &Hits)> {

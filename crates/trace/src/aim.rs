@@ -76,7 +76,7 @@ impl Facing {
         Some(ray)
     }
 
-    /// Returns the density of [`Self::sample`] with respect to dx dy du dv in the plane at the
+    /// The density of [`Self::sample`] with respect to dx dy du dv in the plane at the
     /// beginning of the leg.
     fn density(&self, ray: &TwoPlane) -> f64 {
         let seen = || {
@@ -153,7 +153,7 @@ impl FromSky {
         }
     }
 
-    /// Returns the density of [`Self::sample`] with respect to dx dy du dv.
+    /// The density of [`Self::sample`] with respect to dx dy du dv.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let by_sky = self.sky.slope_density(ray);
         let densities = self.strategies.iter().map(|strategy| match strategy {
@@ -181,7 +181,7 @@ pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }
 
-/// Returns the strategies that draw rays through the window of a virtual plane across the first
+/// The strategies that draw rays through the window of a virtual plane across the first
 /// leg.
 fn across(plane: &VirtualPlane, aimed: bool) -> Vec<SkyStrategy> {
     let (w, distance) = (&plane.window, plane.distance);

@@ -19,7 +19,7 @@ impl AreaSampler {
         Self::Many(triangles.clone(), DiscreteDistribution::new(areas))
     }
 
-    /// Returns the total area.
+    /// The total area.
     pub(crate) fn area(&self) -> f64 {
         match self {
             Self::One(corners) => parallelogram(corners),
@@ -27,7 +27,7 @@ impl AreaSampler {
         }
     }
 
-    /// Returns a point drawn uniformly on the surface with three random numbers in (0, 1), and
+    /// A point drawn uniformly on the surface with three random numbers in (0, 1), and
     /// the surface's normal at this point.
     pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let [s, t, which] = r;
@@ -42,12 +42,12 @@ impl AreaSampler {
     }
 }
 
-/// Returns the two edges of a parallelogram or a triangle that meet at its first corner.
+/// The two edges of a parallelogram or a triangle that meet at its first corner.
 fn edges([corner, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
     [b - corner, c - corner]
 }
 
-/// Returns the area of the parallelogram that three corners span.
+/// The area of the parallelogram that three corners span.
 fn parallelogram(corners: &[DVec3; 3]) -> f64 {
     let [a, b] = edges(corners);
     a.cross(b).length()

@@ -18,7 +18,7 @@ pub(crate) struct Arrival {
 }
 
 impl Arrival {
-    /// Returns the photon on a ray at a distance; `normal` returns the normal of the surface at the
+    /// The photon on a ray at a distance; `normal` returns the normal of the surface at the
     /// photon's point.
     pub(crate) fn new(
         ray: &TwoPlane,
@@ -43,7 +43,7 @@ impl Arrival {
         self.facing.dot(self.direction) < 0.0
     }
 
-    /// Returns this arrival, converted from the frame of one leg to the frame of another. The
+    /// This arrival, converted from the frame of one leg to the frame of another. The
     /// frames `from` and `to` are given in the frame at the light.
     pub(crate) fn moved(&self, from: &Frame, to: &Frame) -> Self {
         let vector = |v: DVec3| to.vector_to_local(from.vector_to_world(v));
@@ -57,7 +57,7 @@ impl Arrival {
     }
 }
 
-/// Returns the ratio of a photon's contribution to radiance space to its flux, (1 + u² + v²)² =
+/// The ratio of a photon's contribution to radiance space to its flux, (1 + u² + v²)² =
 /// 1/cos⁴θ.
 #[inline]
 pub(crate) fn radiance_per_flux(ray: &TwoPlane) -> f64 {

@@ -25,7 +25,7 @@ impl BatchRanges {
         }
     }
 
-    /// Returns the range of the photons of a batch.
+    /// The range of the photons of a batch.
     pub(crate) fn of(&self, batch: u32) -> Range<u64> {
         let start = |b: u32| {
             let share = u128::from(self.photons) * u128::from(b) / u128::from(self.batches);
@@ -34,14 +34,14 @@ impl BatchRanges {
         start(batch)..start(batch + 1)
     }
 
-    /// Returns the number of parts of a batch. A batch has at least one part, and only an empty
+    /// The number of parts of a batch. A batch has at least one part, and only an empty
     /// batch has an empty part.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
         let parts = self.count(batch).div_ceil(self.part_length(batch));
         u32::try_from(parts).unwrap_or(u32::MAX).max(1)
     }
 
-    /// Returns the range of the photons of a part of a batch. Every block of the part except the
+    /// The range of the photons of a part of a batch. Every block of the part except the
     /// last is full.
     pub(crate) fn part(&self, batch: u32, part: u32) -> Range<u64> {
         let range = self.of(batch);
@@ -53,7 +53,7 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// Returns the number of photons in each part of a batch except the last part. The parts are
+    /// The number of photons in each part of a batch except the last part. The parts are
     /// long enough that their numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
@@ -64,7 +64,7 @@ impl BatchRanges {
             .next_multiple_of(BLOCK as u64)
     }
 
-    /// Returns the number of photons of a batch.
+    /// The number of photons of a batch.
     pub(crate) fn count(&self, batch: u32) -> u64 {
         let range = self.of(batch);
         range.end - range.start

@@ -50,7 +50,7 @@ impl Bounce {
         })
     }
 
-    /// Returns the direction in which a photon continues and its contribution to radiance space;
+    /// The direction in which a photon continues and its contribution to radiance space;
     /// `None` if the photon stops.
     #[inline]
     pub(crate) fn sample(&self, arrival: &Arrival, words: [u32; 4]) -> Option<(DVec3, f64)> {
@@ -103,7 +103,7 @@ impl Bounce {
     }
 }
 
-/// Returns the BRDFs at a point of a patch, with their weights.
+/// The BRDFs at a point of a patch, with their weights.
 #[inline]
 pub(crate) fn at<'a>(patch: &Patch, reflectance: &'a Reflectance, point: DVec3) -> Mixture<'a> {
     let at = patch.frame.to_local(point);

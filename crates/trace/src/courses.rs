@@ -60,7 +60,7 @@ fn goes_back(scene: &Scene, leg: usize) -> bool {
     reaches_back || looks_back
 }
 
-/// Returns the distance from a leg's beginning within which hits are attributed to rounding
+/// The distance from a leg's beginning within which hits are attributed to rounding
 /// errors and ignored.
 pub(crate) fn rounding(leg: &Leg) -> f64 {
     const SHARE: f64 = 1e-9;

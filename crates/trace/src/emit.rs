@@ -110,7 +110,7 @@ impl Emitter {
         }
     }
 
-    /// Returns the number of the first block of random words that a photon's interactions with
+    /// The number of the first block of random words that a photon's interactions with
     /// surfaces use. The emission uses only the last word of block 1, which selects the virtual
     /// plane at which a ray is aimed. Light from an environment uses all words of block 1.
     pub(crate) fn bounces_from(&self) -> u32 {
@@ -121,7 +121,7 @@ impl Emitter {
         }
     }
 
-    /// Returns the lattices from which the photons of a scene are drawn; `None` if nets or random
+    /// The lattices from which the photons of a scene are drawn; `None` if nets or random
     /// numbers are used.
     pub(crate) fn lattices(&self, scene: &Scene) -> Option<Lattices> {
         match &self.strategy {
@@ -189,7 +189,7 @@ impl Emitter {
         }
     }
 
-    /// Returns photons with their weights and fluxes.
+    /// Photons with their weights and fluxes.
     #[inline(always)]
     fn weighted(&self, rays: [PhotonColumn; 4], densities: PhotonColumn) -> PhotonGroup {
         let radiance = radiances(&self.light, &rays);
@@ -210,7 +210,7 @@ impl Emitter {
         }
     }
 
-    /// Returns a ray of a light without extent and its density. The slopes of a point light or a
+    /// A ray of a light without extent and its density. The slopes of a point light or a
     /// projector, or the positions of a beam, are uniform within one of several ranges.
     fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
@@ -230,7 +230,7 @@ impl Emitter {
     }
 }
 
-/// Returns the proposals of aimed emission, in the order of the virtual planes whose windows the light
+/// The proposals of aimed emission, in the order of the virtual planes whose windows the light
 /// reaches.
 fn proposals(scene: &Scene) -> Vec<[Proposal; 2]> {
     let extent = match scene.light {
@@ -274,7 +274,7 @@ fn proposals(scene: &Scene) -> Vec<[Proposal; 2]> {
         .collect()
 }
 
-/// Returns a proposal aimed at the window of a virtual plane across the first leg.
+/// A proposal aimed at the window of a virtual plane across the first leg.
 fn window_proposal(
     distance: f64,
     extent: [f64; 2],
@@ -294,7 +294,7 @@ fn window_proposal(
     Proposal::new(DrawOrder::Position, distance, extent, space, slope)
 }
 
-/// Returns rays aimed at virtual planes, as columns of x, y, u and v, and their densities. The
+/// Rays aimed at virtual planes, as columns of x, y, u and v, and their densities. The
 /// plane at which each ray is aimed is `chosen`; `shares` are the shares of all rays.
 #[inline(always)]
 fn aimed(
@@ -329,7 +329,7 @@ fn aimed(
     (rays, densities(proposals, shares, &rays))
 }
 
-/// Returns the density of rays that several proposals aim. The density is per du dv for a point
+/// The density of rays that several proposals aim. The density is per du dv for a point
 /// light, and per dx dy du dv for any other light.
 #[inline(always)]
 fn densities(
@@ -394,7 +394,7 @@ fn even(scene: &Scene) -> Vec<AxisBounds> {
     all.unwrap_or_default()
 }
 
-/// Returns the uniform density at (a, b) within the bounds along two axes.
+/// The uniform density at (a, b) within the bounds along two axes.
 fn evenly_over([[left, right], [low, high]]: &AxisBounds, [a, b]: [f64; 2]) -> f64 {
     let inside = (*left..=*right).contains(&a) && (*low..=*high).contains(&b);
     if inside {

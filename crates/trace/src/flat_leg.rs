@@ -151,7 +151,7 @@ impl FlatLeg {
         }
     }
 
-    /// Returns the obstacles that photons meet, if there are no meshes.
+    /// The obstacles that photons meet, if there are no meshes.
     #[inline]
     pub(crate) fn hits(&self, photons: &PhotonGroup) -> Hits {
         dispatch!(self.level, _simd => self.flat_hits(photons))
@@ -184,7 +184,7 @@ impl FlatLeg {
         arrivals.map(|(i, hit)| (i, self.obstacles[hit - 1].distance))
     }
 
-    /// Returns the number of the flat obstacle that each photon meets.
+    /// The number of the flat obstacle that each photon meets.
     #[inline(always)]
     fn flat_hits(&self, photons: &PhotonGroup) -> Hits {
         let none = self.obstacles.len() + 1;

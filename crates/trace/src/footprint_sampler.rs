@@ -72,7 +72,7 @@ impl FootprintSampler {
         })
     }
 
-    /// Returns a point of the surface, drawn with three random numbers in (0, 1).
+    /// A point of the surface, drawn with three random numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 3]) -> DVec3 {
         match &self.points {
             PatternPoints::Flat(pieces) => pieces.point(r).0,
@@ -83,7 +83,7 @@ impl FootprintSampler {
         }
     }
 
-    /// Returns the density of lines through a sampled point, with respect to dx dy in the plane
+    /// The density of lines through a sampled point, with respect to dx dy in the plane
     /// at the beginning of the leg. The density sums over all points at which the line meets the
     /// surface, because a sample at any of these points gives the same line.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {

@@ -33,7 +33,7 @@ const FINENESS: f64 = 4.0;
 /// shapes overlap.
 const COPIES: usize = 16;
 
-/// Returns the whole part of a number, between 0 and `u32::MAX`.
+/// The whole part of a number, between 0 and `u32::MAX`.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
@@ -44,7 +44,7 @@ fn whole_u32(x: f64) -> u32 {
     x as u32
 }
 
-/// Returns the extent of a shape along an axis. The extent includes a small margin, because
+/// The extent of a shape along an axis. The extent includes a small margin, because
 /// rounding errors may make a point just beyond the edge count as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
@@ -113,7 +113,7 @@ impl Grid {
         Some(grid)
     }
 
-    /// Returns the cell along an axis that contains a coordinate within the bounds.
+    /// The cell along an axis that contains a coordinate within the bounds.
     #[inline(always)]
     fn cell(&self, axis: usize, at: f64) -> u32 {
         let cell = (at - self.bounds[axis][0]) * self.density[axis];

@@ -27,7 +27,7 @@ impl Heading {
         }
     }
 
-    /// Returns the leg in the frame of light with this heading.
+    /// The leg in the frame of light with this heading.
     pub(crate) fn leg(self, leg: &Leg) -> Leg {
         let axis = |local| leg.frame.vector_to_world(self.turned(local));
         Leg {
@@ -41,7 +41,7 @@ impl Heading {
         }
     }
 
-    /// Returns the heading of light that travels in a direction. Also returns the ray that passes
+    /// The heading of light that travels in a direction. Also returns the ray that passes
     /// through a point in this direction, in the frame of the heading. Both arguments are in the
     /// frame of the leg. Returns `None` if the direction is perpendicular to the leg.
     #[inline]

@@ -2,7 +2,7 @@
 
 use etendue_field::{ConvexPolygon, Shape};
 
-/// Returns an array whose element at each index is the value that `f` returns for the index.
+/// An array whose element at each index is the value that `f` returns for the index.
 /// `std::array::from_fn` would call its function separately for each index.
 #[inline(always)]
 pub(crate) fn lanes<T: Copy + Default, const N: usize>(f: impl Fn(usize) -> T) -> [T; N] {

@@ -77,7 +77,7 @@ struct PlaneFrequencies {
 }
 
 impl PlaneFrequencies {
-    /// Returns the frequencies of a virtual plane in coordinates of the first leg. Behind a surface,
+    /// The frequencies of a virtual plane in coordinates of the first leg. Behind a surface,
     /// the angle at which light arrives has little influence, so only positions count.
     fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
         let window = &plane.window;
@@ -100,7 +100,7 @@ impl PlaneFrequencies {
         }
     }
 
-    /// Returns how near each of several frequencies (ρ, ν) along x and y, of light at the light, is to
+    /// How near each of several frequencies (ρ, ν) along x and y, of light at the light, is to
     /// a frequency of the slices: between 0 and the number of azimuths.
     #[inline(always)]
     fn nearness(&self, [along_x, along_y]: &[[VectorLanes; 2]; 2]) -> VectorLanes {
@@ -180,7 +180,7 @@ impl Lattices {
         has_any.then_some(Self { steps })
     }
 
-    /// Returns the points for a batch whose photons have the numbers `range`.
+    /// The points for a batch whose photons have the numbers `range`.
     pub(crate) fn of(
         &self,
         seed: u64,
@@ -211,12 +211,12 @@ impl Lattices {
 }
 
 impl LatticePoints {
-    /// Returns the share of the photons that each proposal has.
+    /// The share of the photons that each proposal has.
     pub(crate) fn shares(&self) -> &[f64] {
         &self.shares
     }
 
-    /// Returns the random numbers of a group of photons that begins with `photon`. `net` returns the
+    /// The random numbers of a group of photons that begins with `photon`. `net` returns the
     /// group's numbers from a net.
     #[inline(always)]
     pub(crate) fn group(
@@ -265,7 +265,7 @@ fn fraction(g: u64, points: u64) -> u64 {
     ((u128::from(g) << 64) / u128::from(points)) as u64
 }
 
-/// Returns the vector (1, a, a², a³) modulo N, for a number a drawn at random (Korobov 1960); `None`
+/// The vector (1, a, a², a³) modulo N, for a number a drawn at random (Korobov 1960); `None`
 /// if a and N have a common divisor.
 fn generator(candidate: u64, points: u64) -> Option<[u64; 4]> {
     let [word, ..] = random::words(0, Stream::Lattice, candidate, 0);
@@ -295,7 +295,7 @@ const DIRECT: Replica = Replica {
 /// The power of a first replica relative to that of the light: that of a square wave.
 const REPLICA_POWER: f64 = 0.1;
 
-/// Returns the spectrum of the light, and its first replicas behind periodic blockers.
+/// The spectrum of the light, and its first replicas behind periodic blockers.
 fn replicas(scene: &Scene) -> Vec<Replica> {
     let mut all = vec![DIRECT];
     for layer in scene.blockers.iter().filter(|layer| layer.distance > 0.0) {
@@ -324,7 +324,7 @@ type Frequencies = [[[f64; 2]; 2]; 2];
 /// One value for each of several vectors of a dual lattice.
 type VectorLanes = [f64; PHOTONS_PER_GROUP];
 
-/// Returns the coefficients of all sums of basis vectors, except that opposite sums are the same.
+/// The coefficients of all sums of basis vectors, except that opposite sums are the same.
 fn coefficients() -> Vec<[f64; 4]> {
     let each = || -COEFFICIENT..=COEFFICIENT;
     let pairs = || each().flat_map(move |a| each().map(move |b| [a, b]));
@@ -334,7 +334,7 @@ fn coefficients() -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// Returns a measure of the noise of a lattice at the frequencies of all planes: the sum of
+/// A measure of the noise of a lattice at the frequencies of all planes: the sum of
 /// [`PlaneFrequencies::nearness`] over the shortest vectors of the dual lattice, around each part of the
 /// spectrum. `coefficients` are those of [`coefficients()`].
 #[inline(always)]
@@ -367,7 +367,7 @@ fn badness(
     sum
 }
 
-/// Returns a basis of short vectors of the dual lattice: multiples of one vector
+/// A basis of short vectors of the dual lattice: multiples of one vector
 /// are subtracted from another until no vector becomes shorter.
 #[expect(
     clippy::cast_possible_truncation,

@@ -96,7 +96,7 @@ impl AllLights<Backward> {
 }
 
 impl<S: PhotonSource> AllLights<S> {
-    /// Returns the tracer of each light, with the index in the whole scene of each plane that the
+    /// The tracer of each light, with the index in the whole scene of each plane that the
     /// light may reach.
     pub fn each(&self) -> impl Iterator<Item = (&S, &[usize])> {
         let lights = self.lights.iter();
@@ -112,7 +112,7 @@ impl<S: PhotonSource> AllLights<S> {
     }
 }
 
-/// Returns the seed of a light; the first light has the seed of the run.
+/// The seed of a light; the first light has the seed of the run.
 fn seed(seed: u64, light: u64) -> u64 {
     if light == 0 {
         return seed;
@@ -121,7 +121,7 @@ fn seed(seed: u64, light: u64) -> u64 {
     u64::from(low) | u64::from(high) << 32
 }
 
-/// Returns the flux that an emitter sends out, estimated from photons that are not measured. If
+/// The flux that an emitter sends out, estimated from photons that are not measured. If
 /// the emission is aimed, it is the flux within the aim.
 fn power(emitter: &Emitter, seed: u64) -> f64 {
     let stream = Stream::Power;
@@ -132,7 +132,7 @@ fn power(emitter: &Emitter, seed: u64) -> f64 {
     fluxes.sum::<f64>() / TRIED as f64
 }
 
-/// Returns the scene of each light with its share of the photons and its own seed, and the indices
+/// The scene of each light with its share of the photons and its own seed, and the indices
 /// of its planes in the whole scene.
 fn divided<'a>(
     scene: &'a Scene,

@@ -3,17 +3,17 @@
 use etendue_field::TwoPlane;
 use glam::DVec3;
 
-/// Returns the point at which a ray begins, in the frame of the ray.
+/// The point at which a ray begins, in the frame of the ray.
 pub(crate) fn start(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.x, ray.y, 0.0)
 }
 
-/// Returns the direction of a ray, with component 1 along D.
+/// The direction of a ray, with component 1 along D.
 pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.u, ray.v, 1.0)
 }
 
-/// Returns the ray through a point along a direction, or `None` if the direction does not go
+/// The ray through a point along a direction, or `None` if the direction does not go
 /// forward along D. The point and the direction are in the frame of the returned ray.
 pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
     let [u, v] = [direction.x / direction.z, direction.y / direction.z];

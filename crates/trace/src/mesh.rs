@@ -37,7 +37,7 @@ impl BlockerMesh {
         }
     }
 
-    /// Returns the first triangle that a ray meets beyond `from`, and the distance of this
+    /// The first triangle that a ray meets beyond `from`, and the distance of this
     /// triangle. Among triangles at the same distance, the triangle with the lowest number is
     /// returned. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
@@ -56,7 +56,7 @@ impl BlockerMesh {
         first
     }
 
-    /// Returns the last triangle on the line of a ray before `until`. Among triangles at the same
+    /// The last triangle on the line of a ray before `until`. Among triangles at the same
     /// distance, the triangle with the lowest number is returned.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
@@ -96,7 +96,7 @@ impl BlockerMesh {
         })
     }
 
-    /// Returns the distances of the nearest and the farthest point, if the mesh lies beyond the
+    /// The distances of the nearest and the farthest point, if the mesh lies beyond the
     /// beginning of a leg whose frame is the frame at the light.
     pub(crate) fn extent(&self) -> Option<[f64; 2]> {
         let [low, high] = self.triangles.bounds();
@@ -135,7 +135,7 @@ impl BlockerMesh {
         });
     }
 
-    /// Returns the corners of a triangle, in the frame of the leg.
+    /// The corners of a triangle, in the frame of the leg.
     #[inline]
     fn corners(&self, i: usize) -> [DVec3; 3] {
         let corners = self.triangles[i];
@@ -145,13 +145,13 @@ impl BlockerMesh {
         }
     }
 
-    /// Returns the unit normal of the plane of a triangle.
+    /// The unit normal of the plane of a triangle.
     pub(crate) fn facet_normal(&self, i: usize) -> DVec3 {
         let [a, b, c] = self.corners(i);
         (b - a).cross(c - a).normalize()
     }
 
-    /// Returns the unit normal at a point of a triangle.
+    /// The unit normal at a point of a triangle.
     pub(crate) fn normal(&self, i: usize, point: DVec3) -> DVec3 {
         let Some(normals) = &self.normals else {
             return self.facet_normal(i);
@@ -161,7 +161,7 @@ impl BlockerMesh {
         interpolated_normal(&self.corners(i), &normals, point)
     }
 
-    /// Returns all hits on the line of a ray, found by a test of every triangle without a
+    /// All hits on the line of a ray, found by a test of every triangle without a
     /// hierarchy.
     #[cfg(test)]
     pub(crate) fn in_turn(&self, ray: &TwoPlane) -> Vec<(f64, usize)> {
@@ -170,7 +170,7 @@ impl BlockerMesh {
         hits.collect()
     }
 
-    /// Returns the lowest and the highest corner of the mesh's bounding box.
+    /// The lowest and the highest corner of the mesh's bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let [low, high] = self.triangles.bounds();
         match &self.leg {
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
     use etendue_transform::random::{self, Stream};
 
-    /// Returns the frames of two legs: one that begins far from the light, and one that begins at
+    /// The frames of two legs: one that begins far from the light, and one that begins at
     /// the light.
     fn legs() -> [Frame; 2] {
         let [origin, d] = [DVec3::new(3.0, -1.0, 2.5), DVec3::new(-3.0, 1.2, -1.4)];
@@ -195,7 +195,7 @@ mod tests {
         ]
     }
 
-    /// Returns a wavy sheet of 2n² triangles around (0, 0, 1).
+    /// A wavy sheet of 2n² triangles around (0, 0, 1).
     fn sheet(n: u32) -> Triangles {
         let corner = |i: u32, j: u32| {
             let [x, y] = [i, j].map(|k| f64::from(k) / f64::from(n) * 2.0 - 1.0);
@@ -212,7 +212,7 @@ mod tests {
         Triangles::new(sheet, 0.5)
     }
 
-    /// Returns the ray of a leg that passes through two points given in the frame at the light.
+    /// The ray of a leg that passes through two points given in the frame at the light.
     fn ray(leg: &Frame, from: DVec3, to: DVec3) -> TwoPlane {
         let [from, to] = [from, to].map(|p| leg.to_local(p));
         let [u, v] = [0, 1].map(|axis| (to - from)[axis] / (to - from).z);

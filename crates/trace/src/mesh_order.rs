@@ -70,6 +70,7 @@ pub(crate) fn meet_mesh(
     let Some(any) = tests.first().copied() else {
         return;
     };
+    // Photons of one cell meet the same nodes of the hierarchy, so the tests are sorted by cell.
     let mut total = 0;
     for start in &mut *starts {
         total += *start;
@@ -107,7 +108,7 @@ impl OrderCells {
         }
     }
 
-    /// Returns the place of a point's cell on a space-filling curve. A point outside the grid has
+    /// The place of a point's cell on a space-filling curve. A point outside the grid has
     /// the cell that is nearest along each axis.
     fn cell(&self, [x, y]: [f64; 2]) -> u32 {
         let along = |axis: usize, at: f64| {
@@ -118,7 +119,7 @@ impl OrderCells {
     }
 }
 
-/// Returns a number below 256 with a zero between each two bits.
+/// A number below 256 with a zero between each two bits.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

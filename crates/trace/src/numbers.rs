@@ -45,7 +45,7 @@ impl PhotonNumbers {
         }
     }
 
-    /// Returns the random numbers for the photons with the numbers `start` and above. The photons of
+    /// The random numbers for the photons with the numbers `start` and above. The photons of
     /// their batch have the numbers `range`. Each batch has its own net, or several nets if it has
     /// more than 2³² photons.
     pub(crate) fn of(
@@ -112,7 +112,7 @@ impl Numbers {
     }
 }
 
-/// Returns the point of a net that a photon uses, where the photon `first` uses the first point.
+/// The point of a net that a photon uses, where the photon `first` uses the first point.
 #[inline]
 fn point(photon: u64, first: u64) -> u32 {
     u32::try_from(photon - first).unwrap_or(u32::MAX)

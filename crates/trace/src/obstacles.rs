@@ -33,7 +33,7 @@ pub(crate) enum ObstacleKind {
 }
 
 impl HitKind {
-    /// Returns the object that the photon meets if the obstacle is a surface, and `None` if it is
+    /// The object that the photon meets if the obstacle is a surface, and `None` if it is
     /// a blocker.
     pub(crate) fn object(&self) -> Option<Object> {
         match self {
@@ -69,7 +69,7 @@ struct Layer<T> {
 }
 
 impl<T> Layer<T> {
-    /// Returns the distance along the leg at which a ray crosses the plane of the layer, and the
+    /// The distance along the leg at which a ray crosses the plane of the layer, and the
     /// crossing point in that plane.
     #[inline]
     fn crossing(&self, ray: &TwoPlane) -> (f64, [f64; 2]) {
@@ -177,7 +177,7 @@ impl Obstacles {
         }
     }
 
-    /// Returns the obstacles beyond the beginning of the leg if all of them lie across the leg or
+    /// The obstacles beyond the beginning of the leg if all of them lie across the leg or
     /// are meshes at which light ends. `end` is the object that ends the leg. Returns `None` for any
     /// other obstacles, and for surfaces that do not scatter light by Lambert's law.
     pub(crate) fn flat(&self, end: Option<Object>) -> Option<Vec<FlatObstacle>> {
@@ -225,7 +225,7 @@ impl Obstacles {
         all.map(|all| all.into_iter().filter(|one| one.distance > 0.0).collect())
     }
 
-    /// Returns the first obstacle that a ray meets beyond `from`, and the distance of this
+    /// The first obstacle that a ray meets beyond `from`, and the distance of this
     /// obstacle.
     #[inline]
     pub(crate) fn closest_hit(
@@ -251,7 +251,7 @@ impl Obstacles {
         }
     }
 
-    /// Returns the transmittance of semi-transparent masks along a ray between the distance
+    /// The transmittance of semi-transparent masks along a ray between the distance
     /// `from` and a plane.
     #[inline]
     pub(crate) fn transmittance(
@@ -294,7 +294,7 @@ impl Obstacles {
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// Returns the share of light on a ray that reaches a plane from the distance `from`. The
+    /// The share of light on a ray that reaches a plane from the distance `from`. The
     /// search goes backwards from the plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,
@@ -350,7 +350,7 @@ fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
 pub(crate) struct Around(pub(crate) Frame);
 
 impl Around {
-    /// Returns the primitives of the shapes in one plane of blockers.
+    /// The primitives of the shapes in one plane of blockers.
     fn layer(&self, distance: f64, shapes: &[Shape]) -> Vec<Primitive> {
         let plane = self.0.decompose(&Frame::IDENTITY.travelled(distance));
         let forms: Vec<Primitive> = shapes
@@ -384,7 +384,7 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// Returns the primitive of a flat shape in the XY plane of a frame. If the axes of this
+    /// The primitive of a flat shape in the XY plane of a frame. If the axes of this
     /// frame are the axes of the leg, the distances of hits are exact.
     #[expect(
         clippy::float_cmp,

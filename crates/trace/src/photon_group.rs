@@ -28,7 +28,7 @@ pub struct PhotonGroup {
 }
 
 impl PhotonGroup {
-    /// Returns the ray of a photon.
+    /// The ray of a photon.
     #[inline(always)]
     #[must_use]
     pub fn ray(&self, i: usize) -> TwoPlane {
@@ -45,7 +45,7 @@ impl PhotonGroup {
         ]
     }
 
-    /// Returns the arrival of a photon at a surface across the leg.
+    /// The arrival of a photon at a surface across the leg.
     pub(crate) fn arrival(&self, i: usize, distance: f64) -> Arrival {
         Arrival::new(&self.ray(i), distance, |_| DVec3::Z, self.fluxes[i])
     }
@@ -58,7 +58,7 @@ impl PhotonGroup {
     }
 }
 
-/// Returns a ray from columns of x, y, u and v.
+/// A ray from columns of x, y, u and v.
 #[inline(always)]
 pub(crate) fn ray([x, y, u, v]: &[PhotonColumn; 4], i: usize) -> TwoPlane {
     let [x, y, u, v] = [x[i], y[i], u[i], v[i]];

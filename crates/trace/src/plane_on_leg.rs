@@ -57,7 +57,7 @@ pub(crate) fn bends(scene: &Scene, object: Object) -> bool {
     }
 }
 
-/// Returns the points at which a line meets a patch.
+/// The points at which a line meets a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let local = patch.frame.to_local(start);
     let direction = patch.frame.vector_to_local(along);
@@ -70,7 +70,7 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 }
 
 impl PlaneOnLeg {
-    /// Returns the ray that has the coordinates `seen` at the virtual plane, and dA / dx dy at the
+    /// The ray that has the coordinates `seen` at the virtual plane, and dA / dx dy at the
     /// plane; `None` if there is no such ray. The ray is given in the plane at the beginning of the
     /// leg.
     ///
@@ -106,7 +106,7 @@ impl PlaneOnLeg {
         self.surface.is_none() && self.heading == Heading::Along
     }
 
-    /// Returns the surface coordinates of the virtual plane; `None` for a plane across the leg.
+    /// The surface coordinates of the virtual plane; `None` for a plane across the leg.
     pub(crate) fn view(&self) -> Option<SurfaceCoordinates> {
         self.surface
     }
@@ -116,7 +116,7 @@ impl PlaneOnLeg {
         Self::of(Heading::Along, leg, scene, index, plane)
     }
 
-    /// Returns the position and coordinates of a virtual plane for light of one heading on the
+    /// The position and coordinates of a virtual plane for light of one heading on the
     /// plane's leg, in the frame of that heading.
     pub(crate) fn of(
         heading: Heading,
@@ -156,7 +156,7 @@ impl PlaneOnLeg {
         }
     }
 
-    /// Returns the distance, at least `from`, at which light on a ray of the leg reaches the
+    /// The distance, at least `from`, at which light on a ray of the leg reaches the
     /// virtual plane; `None` if the light does not reach the plane.
     ///
     /// A virtual plane on a surface records light at the point where the light meets the surface.
@@ -172,7 +172,7 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// Returns the distance as [`Self::crossing`] does, for a photon that starts at the distance
+    /// The distance as [`Self::crossing`] does, for a photon that starts at the distance
     /// `from`. `arrival` is the distance at which the photon arrives at the surface at the end of
     /// the leg, or `None` if the photon meets another obstacle first. If a photon starts or ends
     /// on the surface of the virtual plane, the photon crosses the plane at its start or end. On a
@@ -192,14 +192,14 @@ impl PlaneOnLeg {
         known.or_else(|| self.crossing(ray, from))
     }
 
-    /// Returns the largest slopes relative to the leg, along x and y, of light that arrives on a
+    /// The largest slopes relative to the leg, along x and y, of light that arrives on a
     /// surface within the window of a virtual plane. Returns `None` for a plane across the leg,
     /// or if the slopes are too large for aiming.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }
 
-    /// Returns the ratio cos θ dω / du dv for a ray in the coordinates of the virtual plane.
+    /// The ratio cos θ dω / du dv for a ray in the coordinates of the virtual plane.
     pub(crate) fn flux_per_radiance(&self, seen: &TwoPlane) -> f64 {
         match &self.surface {
             None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
@@ -211,7 +211,7 @@ impl PlaneOnLeg {
         }
     }
 
-    /// Returns a ray of the leg in the coordinates of the virtual plane, with its contribution at
+    /// A ray of the leg in the coordinates of the virtual plane, with its contribution at
     /// the plane; `None` if the ray does not meet the plane's surface.
     #[inline]
     pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
@@ -223,7 +223,7 @@ impl PlaneOnLeg {
 }
 
 impl SurfaceCoordinates {
-    /// Returns the frame of the local normal at a point. The local normal points to the same side
+    /// The frame of the local normal at a point. The local normal points to the same side
     /// as the normal at the central hit. Returns `None` if the two normals differ by a right angle
     /// or more. A line may meet a curved surface once from each side, so only one of two points
     /// with the same coordinates has a frame of the local normal.
@@ -233,7 +233,7 @@ impl SurfaceCoordinates {
         (normal.dot(self.frame.d) > 0.0).then(|| self.frame.turned_to(normal))
     }
 
-    /// Returns the point of the surface at (x, y), and the frame of the normal at this point.
+    /// The point of the surface at (x, y), and the frame of the normal at this point.
     fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         let Some(patch) = &self.patch else {
@@ -243,7 +243,7 @@ impl SurfaceCoordinates {
         over.find_map(|point| Some((point, self.local(patch, point)?)))
     }
 
-    /// Returns the point where a ray meets the surface from the side that the virtual plane sees,
+    /// The point where a ray meets the surface from the side that the virtual plane sees,
     /// and the frame of the normal at this point.
     fn met(&self, start: DVec3, along: DVec3) -> Option<(DVec3, Frame)> {
         let Some(patch) = &self.patch else {
@@ -258,7 +258,7 @@ impl SurfaceCoordinates {
         points(patch, start, along).find_map(|point| Some((point, frame(point)?)))
     }
 
-    /// Returns the ray with given coordinates at the plane, as the inverse of [`Self::at_plane`].
+    /// The ray with given coordinates at the plane, as the inverse of [`Self::at_plane`].
     fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         let (point, frame) = self.point([seen.x, seen.y])?;
         let away = self.away(&frame, [seen.u, seen.v])?;
@@ -282,7 +282,7 @@ impl SurfaceCoordinates {
         Some((ray, weight / (secant_squared * secant_squared * measure)))
     }
 
-    /// Returns the coordinates of a direction away from the surface, measured in `frame`, and the
+    /// The coordinates of a direction away from the surface, measured in `frame`, and the
     /// ratio cos θ dω / du dv; `None` for a direction that points behind the surface.
     fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
@@ -294,7 +294,7 @@ impl SurfaceCoordinates {
         (n > 0.0).then_some(([longitude - self.longitude, latitude], measure))
     }
 
-    /// Returns the direction away from the surface with given angles, as the inverse of
+    /// The direction away from the surface with given angles, as the inverse of
     /// [`Self::seen`].
     fn away(&self, frame: &Frame, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
@@ -332,7 +332,7 @@ impl SurfaceCoordinates {
         self.arriving
     }
 
-    /// Returns the frame in which angles are measured at a point of the surface.
+    /// The frame in which angles are measured at a point of the surface.
     fn frame_at(&self, point: DVec3) -> Option<Frame> {
         match &self.patch {
             None => Some(self.frame),
@@ -340,12 +340,12 @@ impl SurfaceCoordinates {
         }
     }
 
-    /// Returns the direction of a ray that leaves a point of the surface with the angles (u, v).
+    /// The direction of a ray that leaves a point of the surface with the angles (u, v).
     pub(crate) fn direction(&self, point: DVec3, seen: [f64; 2]) -> Option<DVec3> {
         self.away(&self.frame_at(point)?, seen)
     }
 
-    /// Returns the angles of a direction at a point, as the inverse of [`Self::direction`].
+    /// The angles of a direction at a point, as the inverse of [`Self::direction`].
     pub(crate) fn angles(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let (seen, _) = self.seen(&self.frame_at(point)?, direction)?;
         Some(seen)

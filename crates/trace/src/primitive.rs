@@ -24,7 +24,7 @@ pub(crate) enum Primitive {
 }
 
 impl Primitive {
-    /// Returns the distance along the central ray at which a ray meets the primitive, and the
+    /// The distance along the central ray at which a ray meets the primitive, and the
     /// number of the part (such as a triangle) that the ray meets. If there are several hits,
     /// returns the first hit beyond `from`. Hits of a mesh beyond `until` may be ignored.
     #[inline]
@@ -45,7 +45,7 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// Returns the same as [`Self::closest_hit`], for primitives that are not flat. Most primitives
+    /// The same as [`Self::closest_hit`], for primitives that are not flat. Most primitives
     /// are flat, so this function is not inlined, and the machine code of loops over primitives
     /// stays small.
     #[inline(never)]
@@ -67,7 +67,7 @@ impl Primitive {
         }
     }
 
-    /// Returns the largest distance below `until` at which the line of a ray meets the primitive,
+    /// The largest distance below `until` at which the line of a ray meets the primitive,
     /// and the number of the part that the line meets.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         match self {
@@ -120,7 +120,7 @@ impl Primitive {
         }
     }
 
-    /// Returns the unit normal at a point of a part of the primitive.
+    /// The unit normal at a point of a part of the primitive.
     pub(crate) fn normal(&self, part: usize, point: DVec3) -> DVec3 {
         match self {
             Self::Flat { .. } | Self::Grid(_) => DVec3::Z,
@@ -130,7 +130,7 @@ impl Primitive {
         }
     }
 
-    /// Returns the normal of the plane of a part, if it is a triangle and may have another normal
+    /// The normal of the plane of a part, if it is a triangle and may have another normal
     /// at its points.
     pub(crate) fn facet_normal(&self, part: usize) -> Option<DVec3> {
         match self {
@@ -139,7 +139,7 @@ impl Primitive {
         }
     }
 
-    /// Returns the lowest and the highest corner of the primitive's bounding box.
+    /// The lowest and the highest corner of the primitive's bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         match self {
             Self::Flat { distance, shape } => {

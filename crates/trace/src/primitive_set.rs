@@ -53,12 +53,12 @@ impl<T> Clone for PrimitiveHit<'_, T> {
 impl<T> Copy for PrimitiveHit<'_, T> {}
 
 impl<T> PrimitiveHit<'_, T> {
-    /// Returns the unit normal at the hit.
+    /// The unit normal at the hit.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         self.primitive.normal(self.part, point)
     }
 
-    /// Returns the normal of the triangle's plane at a hit on a mesh.
+    /// The normal of the triangle's plane at a hit on a mesh.
     pub(crate) fn facet_normal(&self) -> Option<DVec3> {
         self.primitive.facet_normal(self.part)
     }
@@ -80,12 +80,12 @@ impl<T: Clone> PrimitiveSet<T> {
         }
     }
 
-    /// Returns all primitives.
+    /// All primitives.
     pub(crate) fn primitives(&self) -> &[TaggedPrimitive<T>] {
         &self.primitives
     }
 
-    /// Returns the first primitive that a ray meets beyond `from`, and the distance of the hit.
+    /// The first primitive that a ray meets beyond `from`, and the distance of the hit.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -117,7 +117,7 @@ impl<T: Clone> PrimitiveSet<T> {
         first.map(|(primitive, part)| (nearest, primitive.met(part)))
     }
 
-    /// Returns the last primitive on the line of a ray before `until`, and the distance of the hit.
+    /// The last primitive on the line of a ray before `until`, and the distance of the hit.
     /// The search goes backwards from `until`.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut last = None;
@@ -239,7 +239,7 @@ mod tests {
             .collect()
     }
 
-    /// Returns the hits of a ray with primitives beyond the ray's origin, found by a test of
+    /// The hits of a ray with primitives beyond the ray's origin, found by a test of
     /// every primitive without a hierarchy.
     fn in_turn(all: &[TaggedPrimitive<u32>], ray: &TwoPlane) -> Vec<f64> {
         let met = all.iter().flat_map(|primitive| match &primitive.primitive {

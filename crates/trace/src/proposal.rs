@@ -42,7 +42,7 @@ impl ProfileDensity {
         Self::of(ProposalKind::Constant, half)
     }
 
-    /// Returns the density for slopes of light that a surface receives. The slopes are at most
+    /// The density for slopes of light that a surface receives. The slopes are at most
     /// `half`. The density is weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         Self::of(ProposalKind::Cosine, half)
@@ -58,7 +58,7 @@ impl ProfileDensity {
         }
     }
 
-    /// Returns the share of the density below `t`.
+    /// The share of the density below `t`.
     #[inline(always)]
     fn cumulative(&self, t: f64) -> f64 {
         let s = (t * self.inverse).clamp(-1.0, 1.0);
@@ -94,7 +94,7 @@ impl ProfileDensity {
         s * self.half
     }
 
-    /// Returns the density with respect to dt.
+    /// The density with respect to dt.
     #[inline(always)]
     pub(crate) fn density(&self, t: f64) -> f64 {
         let s = (t * self.inverse).abs();
@@ -160,7 +160,7 @@ impl Aim {
         (range[0] < range[1]).then_some(range)
     }
 
-    /// Returns a slope for a ray from `x` at the distance `from`, drawn with a random number in
+    /// A slope for a ray from `x` at the distance `from`, drawn with a random number in
     /// (0, 1).
     #[inline]
     pub(crate) fn sample(&self, x: f64, from: f64, random: f64) -> Option<f64> {
@@ -168,7 +168,7 @@ impl Aim {
         Some(self.slope.quantile(low + random * (high - low)))
     }
 
-    /// Returns the density of [`Self::sample`] with respect to du.
+    /// The density of [`Self::sample`] with respect to du.
     #[inline]
     pub(crate) fn density(&self, x: f64, from: f64, u: f64) -> f64 {
         let crosses = (x + (self.distance - from) * u).abs() < self.half;
@@ -258,7 +258,7 @@ impl Proposal {
         self.order == DrawOrder::Position
     }
 
-    /// Returns the cumulative densities at the two ends of the range of the second coordinate.
+    /// The cumulative densities at the two ends of the range of the second coordinate.
     #[inline(always)]
     fn ranges<const N: usize>(&self, first: &[f64; N]) -> [[f64; N]; 2] {
         let [low, high] = self.light;
@@ -276,7 +276,7 @@ impl Proposal {
         }
     }
 
-    /// Returns positions on the light and slopes, each pair drawn with two random numbers in (0,
+    /// Positions on the light and slopes, each pair drawn with two random numbers in (0,
     /// 1).
     #[inline(always)]
     pub(crate) fn samples<const N: usize>(&self, numbers: [[f64; N]; 2]) -> [[f64; N]; 2] {
@@ -293,7 +293,7 @@ impl Proposal {
         ([x, u], self.densities_of([&x, &u], ranges))
     }
 
-    /// Returns the density of [`Self::samples`] with respect to dx du.
+    /// The density of [`Self::samples`] with respect to dx du.
     #[inline(always)]
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
         let ranges = (!self.is_point()).then(|| match self.order {
@@ -331,7 +331,7 @@ impl Proposal {
         ([x, u], Some([low, high]))
     }
 
-    /// Returns the matrix that takes frequencies over the two random numbers of [`Self::samples`] to
+    /// The matrix that takes frequencies over the two random numbers of [`Self::samples`] to
     /// frequencies over (x, u), where samples are a linear function of the random numbers. The
     /// linear function has the mean derivatives of samples in the middle half of each number.
     pub(crate) fn frequencies(&self) -> [[f64; 2]; 2] {

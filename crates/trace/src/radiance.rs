@@ -5,7 +5,7 @@ use crate::photon_group::{PhotonColumn, ray};
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
-/// Returns the radiance along several rays, given as columns of x, y, u and v.
+/// The radiance along several rays, given as columns of x, y, u and v.
 #[inline(always)]
 pub(crate) fn radiances(light: &Light, rays: &[PhotonColumn; 4]) -> PhotonColumn {
     match light {
@@ -21,7 +21,7 @@ pub(crate) fn radiances(light: &Light, rays: &[PhotonColumn; 4]) -> PhotonColumn
     }
 }
 
-/// Returns the radiance along a ray that is given in the plane of the light. The value is per du dv
+/// The radiance along a ray that is given in the plane of the light. The value is per du dv
 /// for a point light, per dx dy for a beam, and per share of flux for rays of a file. The value
 /// follows from two relations: dω = du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ contributes Φ
 /// (1 + u² + v²)² to radiance space.

@@ -9,7 +9,7 @@ use etendue_field::{
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
-/// Returns the half-widths of a box around the central ray, in the plane at the end of `leg`. All
+/// The half-widths of a box around the central ray, in the plane at the end of `leg`. All
 /// light from `origins` (in the frame of the leg) that can reach the window of `plane` passes
 /// through this box. `plane` lies on a later leg, or on the surface that ends `leg`. Returns `None`
 /// if no light reaches the window. Also returns `None` if light must travel perpendicular to a
@@ -47,7 +47,7 @@ pub(crate) fn reach(
     (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
 }
 
-/// Returns the corners of the region that light can leave, in the frame at the light. For a mesh,
+/// The corners of the region that light can leave, in the frame at the light. For a mesh,
 /// returns the corners of the bounding box.
 pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
@@ -60,7 +60,7 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
-/// Returns the part of a flat first surface from which light can reach the window of a virtual
+/// The part of a flat first surface from which light can reach the window of a virtual
 /// plane on this surface or beyond it. The result is the lowest and the highest coordinates of
 /// this part in the surface's frame, or `None` if there is no such part.
 pub(crate) fn footprint(
@@ -87,7 +87,7 @@ pub(crate) fn footprint(
     low.cmplt(high).all().then_some([low, high])
 }
 
-/// Returns the corners of the window of a virtual plane, in the frame at the light.
+/// The corners of the window of a virtual plane, in the frame at the light.
 fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let half = DVec3::new(half[0], half[1], 0.0);
@@ -95,7 +95,7 @@ fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     box_corners(-half, half).map(to_light).to_vec()
 }
 
-/// Returns the corners of a region of a virtual plane's surface that contains everything that the
+/// The corners of a region of a virtual plane's surface that contains everything that the
 /// plane's window sees.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
@@ -238,7 +238,7 @@ fn seen_of_patch(
     })
 }
 
-/// Returns the rays that pass through the corners of a window with the window's extreme slopes.
+/// The rays that pass through the corners of a window with the window's extreme slopes.
 /// Each ray is given by two points in the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
@@ -258,7 +258,7 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     rays
 }
 
-/// Returns the point where the line through two points meets the plane of a surface, in the
+/// The point where the line through two points meets the plane of a surface, in the
 /// surface's frame. Returns `None` if the line runs to the other side of the surface or parallel
 /// to it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// π, the flux that a Lambertian surface emits per radiance and area.
 pub(crate) const LAMBERTIAN: f64 = PI;
 
-/// Returns a point drawn uniformly in a shape, with two random numbers in (0, 1).
+/// A point drawn uniformly in a shape, with two random numbers in (0, 1).
 pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => [0, 1].map(|axis| {

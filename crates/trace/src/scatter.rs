@@ -58,7 +58,7 @@ pub(crate) enum Spread<'a> {
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
-    /// Returns a direction in which light leaves a point at which the surface has the normal
+    /// A direction in which light leaves a point at which the surface has the normal
     /// `normal`.
     #[inline]
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -70,7 +70,7 @@ impl Spread<'_> {
         }
     }
 
-    /// Returns the density of [`Self::sample`] with respect to n · (u, v, ±1) du dv, where
+    /// The density of [`Self::sample`] with respect to n · (u, v, ±1) du dv, where
     /// `cosine` is n · (u, v, ±1).
     #[inline]
     fn density(&self, towards: DVec3, cosine: f64) -> f64 {
@@ -84,7 +84,7 @@ impl Spread<'_> {
         }
     }
 
-    /// Returns the value of the BRDF for a direction; Lambertian scattering omits the albedo.
+    /// The value of the BRDF for a direction; Lambertian scattering omits the albedo.
     #[inline]
     pub(crate) fn value(&self, towards: DVec3) -> f64 {
         match self {
@@ -98,14 +98,14 @@ impl Spread<'_> {
 }
 
 impl Angles {
-    /// Returns a direction in which light leaves a point, drawn with two random numbers in (0,
+    /// A direction in which light leaves a point, drawn with two random numbers in (0,
     /// 1).
     fn sample(&self, point: DVec3, random: [f64; 2]) -> Option<DVec3> {
         let angles = [0, 1].map(|i| self.across[i].quantile(random[i]));
         self.view.direction(point, angles)
     }
 
-    /// Returns the density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
+    /// The density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
     fn density(&self, point: DVec3, towards: DVec3) -> f64 {
         self.view.angles(point, towards).map_or(0.0, |[u, v]| {
             self.across[0].density(u) * self.across[1].density(v) / libm::cos(v)
@@ -113,14 +113,14 @@ impl Angles {
     }
 }
 
-/// Returns the ratio dω / (n · (u, v, ±1) du dv), where dω = du dv / (1 + u² + v²)^(3/2).
+/// The ratio dω / (n · (u, v, ±1) du dv), where dω = du dv / (1 + u² + v²)^(3/2).
 #[inline]
 fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
     1.0 / (secant_squared * secant_squared.sqrt() * cosine)
 }
 
 impl Scatterer {
-    /// Returns the scatterer at the beginning of a leg; `None` if no virtual plane sees light of
+    /// The scatterer at the beginning of a leg; `None` if no virtual plane sees light of
     /// the leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
@@ -177,7 +177,7 @@ impl Scatterer {
         Some(Self { strategies })
     }
 
-    /// Returns a direction in which light leaves a point with the normal `normal`, and the
+    /// A direction in which light leaves a point with the normal `normal`, and the
     /// density of this direction with respect to n · (u, v, ±1) du dv. Returns `None` if light
     /// from the point cannot reach the selected virtual plane, or if the direction goes behind
     /// the surface.

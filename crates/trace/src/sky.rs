@@ -54,7 +54,7 @@ impl Sky {
         sky
     }
 
-    /// Returns a unit direction in which light travels, in the frame at the light, drawn with
+    /// A unit direction in which light travels, in the frame at the light, drawn with
     /// four random numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 4]) -> DVec3 {
         let from = match &self.choice {
@@ -70,7 +70,7 @@ impl Sky {
         -self.environment.frame.vector_to_world(from)
     }
 
-    /// Returns the density of [`Self::sample`] per steradian.
+    /// The density of [`Self::sample`] per steradian.
     pub(crate) fn density(&self, along: DVec3) -> f64 {
         let from = self.environment.origin_of(along);
         match &self.choice {
@@ -79,7 +79,7 @@ impl Sky {
         }
     }
 
-    /// Returns the slopes of a drawn direction; `None` if the direction does not go forward.
+    /// The slopes of a drawn direction; `None` if the direction does not go forward.
     pub(crate) fn slopes(&self, r: [f64; 4]) -> Option<[f64; 2]> {
         let along = if r[0] < self.by_cosine {
             cosine_hemisphere([r[2], r[1]])
@@ -90,7 +90,7 @@ impl Sky {
         (along.z > FORWARD).then(|| [along.x / along.z, along.y / along.z])
     }
 
-    /// Returns the density of [`Self::slopes`] with respect to du dv.
+    /// The density of [`Self::slopes`] with respect to du dv.
     #[inline]
     pub(crate) fn slope_density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
@@ -100,7 +100,7 @@ impl Sky {
         density / (secant_squared * secant_squared.sqrt())
     }
 
-    /// Returns the radiance along a ray, in the frame at the light.
+    /// The radiance along a ray, in the frame at the light.
     #[inline]
     pub(crate) fn radiance(&self, ray: &TwoPlane) -> f64 {
         radiance(&self.environment, ray)
@@ -131,7 +131,7 @@ impl Sky {
     }
 }
 
-/// Returns the radiance of an environment along a ray, in the frame at the light.
+/// The radiance of an environment along a ray, in the frame at the light.
 #[inline]
 pub(crate) fn radiance(environment: &Environment, ray: &TwoPlane) -> f64 {
     if ray.secant_squared() * FORWARD * FORWARD < 1.0 {

@@ -110,7 +110,7 @@ struct Photon {
 }
 
 impl Photon {
-    /// Returns a photon of a group whose first photon has the number `first`.
+    /// A photon of a group whose first photon has the number `first`.
     fn emitted(group: &PhotonGroup, i: usize, first: u64) -> Self {
         Self {
             index: first + i as u64,
@@ -320,7 +320,7 @@ impl FlightLeg {
         FlatLeg::new(obstacles.flat(self.ends)?, planes_on_leg)
     }
 
-    /// Returns the start on this leg of a photon that arrives at the end of the previous leg;
+    /// The start on this leg of a photon that arrives at the end of the previous leg;
     /// `None` if the photon ends at the previous leg.
     #[inline(never)]
     fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {

@@ -15,7 +15,7 @@ pub struct PlaneInWorld {
 }
 
 impl PlaneInWorld {
-    /// Returns the converter for the virtual plane of a scene with the index `plane`; `None` if
+    /// The converter for the virtual plane of a scene with the index `plane`; `None` if
     /// the scene has no such plane.
     #[must_use]
     pub fn new(scene: &Scene, plane: usize) -> Option<Self> {
@@ -27,7 +27,7 @@ impl PlaneInWorld {
         })
     }
 
-    /// Returns the point where a ray crosses the virtual plane, in metres, and the unit vector
+    /// The point where a ray crosses the virtual plane, in metres, and the unit vector
     /// along which light travels at this point. If the virtual plane lies on a surface, the
     /// returned point lies on this surface. Returns `None` for coordinates that belong to no ray.
     #[must_use]
@@ -44,7 +44,7 @@ impl PlaneInWorld {
         Some([self.leg.to_world(point), along])
     }
 
-    /// Returns the flux of a photon times the number of photons emitted, W. This flux is the
+    /// The flux of a photon times the number of photons emitted, W. This flux is the
     /// photon's weight times cos θ dω / du dv, because the reciprocal of cos θ dω / du dv
     /// converts flux to radiance space (docs/conventions.md).
     #[must_use]

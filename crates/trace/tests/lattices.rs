@@ -28,7 +28,7 @@ const FREQUENCIES: [[f64; 4]; 5] = [
     [0.0, 11.0, 0.0, 3.0],
 ];
 
-/// Returns the mean over the batches of each Fourier coefficient of each plane, and the variance of
+/// The mean over the batches of each Fourier coefficient of each plane, and the variance of
 /// this mean.
 fn coefficients(scene: &Scene) -> Vec<[f64; 2]> {
     let tracer = Tracer::new(scene);

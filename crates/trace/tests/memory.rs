@@ -24,7 +24,7 @@ const SCENE: &str = r#"(
     frequencies: (rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// Returns a number of bytes that the kernel reports for this process.
+/// A number of bytes that the kernel reports for this process.
 fn bytes(what: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with(what)).unwrap();

@@ -46,7 +46,7 @@ struct Parts {
     triangles: Vec<[usize; 3]>,
 }
 
-/// Returns a bumpy square around the origin, facing along z.
+/// A bumpy square around the origin, facing along z.
 fn square(draw: &Draw, bumps: f64) -> Parts {
     let n = 1 + draw.below(5);
     let at = |i: usize| 2.0 * i as f64 / n as f64 - 1.0;
@@ -69,7 +69,7 @@ fn square(draw: &Draw, bumps: f64) -> Parts {
     }
 }
 
-/// Returns a closed surface of eight triangles.
+/// A closed surface of eight triangles.
 fn octahedron(draw: &Draw) -> Parts {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let vertices = axes.into_iter().flat_map(|axis| [axis, -axis]);
@@ -140,7 +140,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     parts
 }
 
-/// Returns the text of a mesh file. Vertices are counted from 1 in OBJ files, and from 0 in PLY
+/// The text of a mesh file. Vertices are counted from 1 in OBJ files, and from 0 in PLY
 /// files.
 fn written(parts: &Parts, obj: bool) -> String {
     let mut text = String::new();
@@ -168,7 +168,7 @@ fn written(parts: &Parts, obj: bool) -> String {
     text
 }
 
-/// Returns a scene with a mesh of half-width `size` in front of a light of the same size.
+/// A scene with a mesh of half-width `size` in front of a light of the same size.
 fn scene(file: &str, event: &str, scale: f64, size: f64, center: DVec3) -> String {
     let (length, wide) = (size.clamp(1e-9, 1e9), size.clamp(1e-8, 1e8));
     let light = center + 3.0 * size * DVec3::new(0.3, -0.2, 1.0);

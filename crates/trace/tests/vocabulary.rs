@@ -7,7 +7,7 @@ use crate::common::estimates;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// Returns a scene with a light, blockers, and virtual planes on both legs.
+/// A scene with a light, blockers, and virtual planes on both legs.
 fn scene(light: &str, blockers: &str, emission: &str, photons: u32) -> Scene {
     let text = format!(
         r#"(

@@ -25,7 +25,7 @@ fn scene(visits: &str, planes: &str) -> Scene {
     resolve("test", file, Path::new("."), u64::MAX).unwrap()
 }
 
-/// Returns the position, the direction and the flux in W of all photons that cross a virtual
+/// The position, the direction and the flux in W of all photons that cross a virtual
 /// plane.
 fn rays(scene: &Scene, plane: usize) -> Vec<(DVec3, DVec3, f64)> {
     let tracer = Tracer::new(scene);

@@ -56,7 +56,7 @@ impl Job {
         }
     }
 
-    /// Returns the milliseconds of one transform. If `fresh` is set, they include the time to
+    /// The milliseconds of one transform. If `fresh` is set, they include the time to
     /// allocate and fill new memory; otherwise the transform uses existing memory.
     fn run(&mut self) -> f64 {
         if self.fresh {
@@ -88,7 +88,7 @@ impl Job {
     }
 }
 
-/// Returns the peak memory of this process so far, in megabytes.
+/// The peak memory of this process so far, in megabytes.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -32,7 +32,7 @@ fn ray(i: u32) -> TwoPlane {
     }
 }
 
-/// Returns the shortest of ten times.
+/// The shortest of ten times.
 fn best(mut seconds: impl FnMut() -> f64) -> f64 {
     (0..10).map(|_| seconds()).fold(f64::INFINITY, f64::min)
 }

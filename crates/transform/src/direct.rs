@@ -3,7 +3,7 @@
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, cis};
 use std::f64::consts::TAU;
 
-/// Returns Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx,
+/// Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx,
 /// Ωy, Ωu, Ωv).
 ///
 /// The sum is exact apart from rounding errors. If it is divided by the number of emitted photons,
@@ -23,7 +23,7 @@ pub fn at<'a>(
         .sum()
 }
 
-/// Returns the same sum at every frequency of `grid`.
+/// The same sum at every frequency of `grid`.
 pub fn slices(
     crossings: &[Crossing],
     window: impl Fn(&TwoPlane) -> f64,

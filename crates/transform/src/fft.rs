@@ -46,7 +46,7 @@ impl fmt::Debug for RealFft4 {
     }
 }
 
-/// Returns the real number `index` of a row that is not transformed yet.
+/// The real number `index` of a row that is not transformed yet.
 #[inline]
 #[must_use]
 pub fn real(row: &[Complex], index: usize) -> f64 {
@@ -58,7 +58,7 @@ pub fn real(row: &[Complex], index: usize) -> f64 {
     }
 }
 
-/// Returns the position of the real number `index` in a row.
+/// The position of the real number `index` in a row.
 #[inline]
 pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
     let pair = &mut row[index / 2];
@@ -97,19 +97,19 @@ impl RealFft4 {
         }
     }
 
-    /// Returns the lengths of the axes.
+    /// The lengths of the axes.
     #[must_use]
     pub fn shape(&self) -> [usize; 4] {
         self.shape
     }
 
-    /// Returns the number of complex numbers of a row, n₃/2 + 1.
+    /// The number of complex numbers of a row, n₃/2 + 1.
     #[must_use]
     pub fn row(&self) -> usize {
         self.shape[3] / 2 + 1
     }
 
-    /// Returns the number of complex numbers of the array.
+    /// The number of complex numbers of the array.
     #[must_use]
     pub fn size(&self) -> usize {
         let [n0, n1, n2, _] = self.shape;

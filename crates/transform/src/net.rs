@@ -36,7 +36,7 @@ static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
 /// The contribution of the lowest byte of a point's index, [block, coordinate, value].
 static LOWEST: [[[u32; 256]; WIDTH]; JOINT] = lowest();
 
-/// Returns the contribution of each bit of a point's index to a coordinate of Sobol' points;
+/// The contribution of each bit of a point's index to a coordinate of Sobol' points;
 /// contributions are combined by exclusive or. There are ten coordinates, starting at 0.
 #[must_use]
 pub const fn sobol_directions(dimension: usize) -> [u32; 32] {
@@ -176,7 +176,7 @@ impl Net {
 }
 
 impl Keys {
-    /// Returns the coordinates of a point without scrambling, as words of reversed bits.
+    /// The coordinates of a point without scrambling, as words of reversed bits.
     #[inline(always)]
     fn reversed(&self, point: u32, block: usize) -> [u32; WIDTH] {
         // The first blocks form a joint net; further blocks are combined with it in a random order.
@@ -190,7 +190,7 @@ impl Keys {
         std::array::from_fn(|k| a[k] ^ b[k] ^ c[k] ^ d[k])
     }
 
-    /// Returns the addend and multiplier that scramble a coordinate.
+    /// The addend and multiplier that scramble a coordinate.
     #[inline(always)]
     fn coordinate(&self, k: usize) -> [u32; 2] {
         [self.added[k], self.factors[k]]

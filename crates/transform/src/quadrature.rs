@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 /// The rules by their number of points; each rule is computed once, when it is first used.
 static RULES: [OnceLock<Vec<(f64, f64)>>; 256] = [const { OnceLock::new() }; 256];
 
-/// Returns nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending. The
+/// Nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending. The
 /// rule is exact for polynomials of degree 2n − 1, apart from rounding errors.
 #[must_use]
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
@@ -30,7 +30,7 @@ fn node(n: usize, i: usize) -> (f64, f64) {
     (x, 2.0 / ((1.0 - x * x) * slope * slope))
 }
 
-/// Returns the Legendre polynomial of degree n and its derivative, by recurrence.
+/// The Legendre polynomial of degree n and its derivative, by recurrence.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     for j in 2..=n {

@@ -35,7 +35,7 @@ pub enum Stream {
     Power,
 }
 
-/// Returns four random words for `block` of item `index` in a stream of `seed`.
+/// Four random words for `block` of item `index` in a stream of `seed`.
 #[inline]
 #[must_use]
 #[expect(

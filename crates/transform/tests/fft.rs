@@ -5,7 +5,7 @@ use etendue_field::Complex;
 use etendue_transform::{RealFft4, real, real_mut};
 use std::f64::consts::TAU;
 
-/// Returns random reals laid out for `plan`.
+/// Random reals laid out for `plan`.
 fn field(plan: &RealFft4, seed: u64) -> Vec<Complex> {
     let mut random = Random(seed);
     // The unused part of a row must not be read, so it is filled too.
@@ -23,7 +23,7 @@ fn indices([n0, n1, n2, n3]: [usize; 4]) -> impl Iterator<Item = [usize; 4]> {
     (0..n0 * n1 * n2 * n3).map(all)
 }
 
-/// Returns the plain sum at `frequency`.
+/// The plain sum at `frequency`.
 fn plain(shape: [usize; 4], reals: &[f64], frequency: [usize; 4]) -> Complex {
     let term = |(z, f): ([usize; 4], &f64)| {
         let cycles =
@@ -39,7 +39,7 @@ fn reals(plan: &RealFft4, data: &[Complex]) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the largest difference between the transform and the plain sum, relative to the root
+/// The largest difference between the transform and the plain sum, relative to the root
 /// mean square of the plain sum.
 fn error(shape: [usize; 4]) -> f64 {
     let plan = RealFft4::new(shape);

@@ -6,7 +6,7 @@ use etendue_field::{Crossing, FrequencyAxis, Profile, SliceGrid, TwoPlane, Windo
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    /// Returns a number uniform in [0, 1).
+    /// A number uniform in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -15,12 +15,12 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Returns a number uniform in (−half, half).
+    /// A number uniform in (−half, half).
     pub(crate) fn within(&mut self, half: f64) -> f64 {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// Returns a random crossing, up to `reach` half-widths of `window` from the window's centre,
+    /// A random crossing, up to `reach` half-widths of `window` from the window's centre,
     /// with a weight in [0, 2).
     pub(crate) fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
@@ -55,7 +55,7 @@ pub(crate) fn boxed() -> Window {
     }
 }
 
-/// Returns a grid of `azimuths` slices with `half` values of ρ and of ν on either side of zero, and
+/// A grid of `azimuths` slices with `half` values of ρ and of ν on either side of zero, and
 /// with `fineness` samples for each 1/(2 half-width).
 pub(crate) fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {

@@ -16,7 +16,7 @@ fn fast(plan: &SliceTransform, crossings: &[Crossing], window: &Window) -> Slice
     sum.finish(1.0)
 }
 
-/// Returns the largest difference over all frequencies, relative to Σ|w|.
+/// The largest difference over all frequencies, relative to Σ|w|.
 fn error(a: &Slices, b: &Slices, crossings: &[Crossing], window: &Window) -> f64 {
     let differences = a.half.iter().zip(&b.half).map(|(a, b)| (a - b).norm());
     let largest = differences.fold(0.0, f64::max);

@@ -39,13 +39,13 @@ pub(super) const DARK: &str = "some light comes";
 /// The name for reasons with unknown wording, and for panics of a check.
 pub(super) const UNKNOWN: &str = "not in this list";
 
-/// Returns the violated assumption that a reason names, or `None` if no phrase matches.
+/// The violated assumption that a reason names, or `None` if no phrase matches.
 pub(super) fn assumption(reason: &str) -> Option<&'static str> {
     let found = PHRASES.iter().find(|(_, phrase)| reason.contains(phrase));
     found.map(|(assumption, _)| *assumption)
 }
 
-/// Returns all assumptions, each once.
+/// All assumptions, each once.
 pub(super) fn assumptions() -> Vec<&'static str> {
     let mut all: Vec<&str> = PHRASES.iter().map(|(assumption, _)| *assumption).collect();
     all.extend([DARK, UNKNOWN]);

@@ -69,7 +69,7 @@ pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<ReportSecti
     Ok(section(options, &random?, &kept))
 }
 
-/// Returns a random scene.
+/// A random scene.
 fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = wild::scene(options.seed, number, options.photons, folder.path());
@@ -80,7 +80,7 @@ fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>>
 /// The scenes of the repository.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
 
-/// Returns the scene files in a folder and its subfolders, sorted by name.
+/// The scene files in a folder and its subfolders, sorted by name.
 fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries: io::Result<Vec<_>> = fs::read_dir(folder)?.collect();
     let mut paths: Vec<PathBuf> = entries?.iter().map(fs::DirEntry::path).collect();

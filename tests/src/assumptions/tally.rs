@@ -78,7 +78,7 @@ impl AssumptionRow {
     }
 }
 
-/// Returns the table, with checks that the violation of each tested assumption is detected.
+/// The table, with checks that the violation of each tested assumption is detected.
 pub(super) fn section(
     options: &AssumptionOptions,
     random: &[TriedScene],

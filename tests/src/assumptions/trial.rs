@@ -77,7 +77,7 @@ fn trial(scene: &Scene) -> Option<Trial> {
     }
 }
 
-/// Returns the result of `work`, or its panic message.
+/// The result of `work`, or its panic message.
 fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     // After `work` panics, nothing that `work` modified is used.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
@@ -139,7 +139,7 @@ fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
         })
 }
 
-/// Returns the prediction of a theory for a plane, without derivatives.
+/// The prediction of a theory for a plane, without derivatives.
 fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);

@@ -22,7 +22,7 @@ pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
     ]
 }
 
-/// Returns the fields of an array of squares.
+/// The fields of an array of squares.
 fn array(count: u32, pitch: f64) -> [(&'static str, String); 2] {
     [
         ("blockers.0.count", format!("({count}, {count})")),
@@ -204,14 +204,14 @@ fn before_average(run: ClaimRun) -> Claim {
     }
 }
 
-/// Returns the strips of one mask of a pair, centred on the central ray, in metres.
+/// The strips of one mask of a pair, centred on the central ray, in metres.
 fn centred(pair: u32, offset: f64) -> Strips {
     let mut open = strips(pair, offset);
     open.iter_mut().flatten().for_each(|edge| *edge -= 0.5);
     open
 }
 
-/// Returns the complement of the open strips, as opaque rectangles from −1 m to 1 m.
+/// The complement of the open strips, as opaque rectangles from −1 m to 1 m.
 fn opaque(open: &Strips) -> String {
     let mut edges = vec![-1.0];
     edges.extend(open.iter().flatten());
@@ -228,7 +228,7 @@ fn opaque(open: &Strips) -> String {
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
-/// Returns the 90 % bandwidth of |S(ρ, 0)| behind both masks, the 90 % bandwidth of the bound
+/// The 90 % bandwidth of |S(ρ, 0)| behind both masks, the 90 % bandwidth of the bound
 /// Σ|V̂(m)||S₁(ρ − m, 0)|, and the largest ratio of the spectrum to the bound. S₁ is the spectrum
 /// behind one mask alone.
 fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {

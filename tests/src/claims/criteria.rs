@@ -12,7 +12,7 @@ pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
     vec![criteria(run), larger_curvature(run)]
 }
 
-/// Returns the criterion at an eye 0.5 m from a glossy surface, in the mirror direction.
+/// The criterion at an eye 0.5 m from a glossy surface, in the mirror direction.
 fn criterion(curvature: f64, incidence: f64, blocker_distance: Option<f64>) -> Criterion {
     Criterion {
         curvature,

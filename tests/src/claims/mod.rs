@@ -29,7 +29,7 @@ struct Claim {
     holds: &'static str,
 }
 
-/// Returns the section.
+/// The section.
 pub(crate) fn claims(run: ClaimRun) -> ReportSection {
     let parts = [
         blockers::claims,

@@ -14,7 +14,7 @@ pub(super) struct ClaimNumber {
 }
 
 impl ClaimNumber {
-    /// Returns the measured value minus the prediction, in standard errors.
+    /// The measured value minus the prediction, in standard errors.
     pub(super) fn pull(&self) -> f64 {
         (self.value - self.predicted) / self.error
     }
@@ -24,7 +24,7 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
-    /// Returns the number and its error divided by `unit`.
+    /// The number and its error divided by `unit`.
     pub(super) fn per(&self, unit: f64) -> Self {
         Self {
             value: self.value / unit,
@@ -33,7 +33,7 @@ impl ClaimNumber {
         }
     }
 
-    /// Returns the ratio of two independent numbers.
+    /// The ratio of two independent numbers.
     pub(super) fn over(&self, other: &Self) -> Self {
         let value = self.value / other.value;
         let share = (self.error / self.value).hypot(other.error / other.value);
@@ -48,7 +48,7 @@ impl ClaimNumber {
 /// The slices of independent batches, as one list for each plane from which a number is computed.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
-/// Returns a number computed from the mean slices, and its standard error, by the delete-one
+/// A number computed from the mean slices, and its standard error, by the delete-one
 /// jackknife. The jackknife also removes the bias of |S|², which is of the order of the noise
 /// power (Quenouille 1956).
 pub(super) fn jackknife(batches: &Batches, of: &dyn Fn(&[Slices]) -> f64) -> [f64; 2] {
@@ -84,7 +84,7 @@ fn sum(batches: &[Slices]) -> Slices {
     sum
 }
 
-/// Returns the value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
+/// The value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
 pub(super) fn at(slices: &Slices, k: usize, [rho, nu]: [f64; 2]) -> Complex {
     let grid = &slices.grid;
     let m = whole((rho / grid.rho.spacing).round());
@@ -92,7 +92,7 @@ pub(super) fn at(slices: &Slices, k: usize, [rho, nu]: [f64; 2]) -> Complex {
     slices.half[[k, m, n]]
 }
 
-/// Returns the frequencies ρ ≥ 0 on the line ν = 0 of slice `k`, each with the value of the
+/// The frequencies ρ ≥ 0 on the line ν = 0 of slice `k`, each with the value of the
 /// slice.
 pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
     let middle = slices.grid.nu.half;
@@ -102,7 +102,7 @@ pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
         .collect()
 }
 
-/// Returns the sum of |S|² on the line ν = 0 of slice 0, over the selected frequencies.
+/// The sum of |S|² on the line ν = 0 of slice 0, over the selected frequencies.
 pub(super) fn power(slices: &Slices, wanted: impl Fn(f64) -> bool) -> f64 {
     let along = line(slices, 0).into_iter();
     let inside = along.filter(|(rho, _)| wanted(*rho));

@@ -55,7 +55,7 @@ impl SeenScene {
         }
     }
 
-    /// Returns a number computed from one plane.
+    /// A number computed from one plane.
     pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> ClaimNumber {
         number(&[(self, plane)], &|slices| of(&slices[0]))
     }

@@ -21,7 +21,7 @@ pub(super) fn claims(run: ClaimRun) -> Vec<Claim> {
     all
 }
 
-/// Returns the field of a surface whose normal is turned from the central ray by `incidence`, in
+/// The field of a surface whose normal is turned from the central ray by `incidence`, in
 /// radians.
 fn facing(incidence: f64) -> (&'static str, String) {
     let (sine, cosine) = incidence.sin_cos();
@@ -112,7 +112,7 @@ fn mirror_sphere(run: ClaimRun) -> Claim {
     }
 }
 
-/// Returns two angles of a photon that leaves a sphere of 0.5 m, measured from the direction
+/// Two angles of a photon that leaves a sphere of 0.5 m, measured from the direction
 /// towards the beam's source. The first is the angle to the normal at the point where the photon
 /// leaves, and the second is the angle to the direction of the photon.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {

@@ -19,7 +19,7 @@ const BUDGET: RayBudget = RayBudget::new(4e6, 1e-3);
 /// The name of a fault, and the change of a chain that plants it.
 type HoleFault = (&'static str, fn(&mut Chain));
 
-/// Returns a row for the scene without a fault, and a row for each fault.
+/// A row for the scene without a fault, and a row for each fault.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     let sound = traced(scene);
     let changes: [HoleFault; 4] = [
@@ -48,7 +48,7 @@ pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     rows.collect()
 }
 
-/// Returns the p-values of a plane that a chain predicts.
+/// The p-values of a plane that a chain predicts.
 fn of_chain(
     scene: &Scene,
     measurement: &Measurement,

@@ -83,7 +83,7 @@ fn scaled(mut slices: Slices, factor: impl Fn([f64; 2]) -> f64) -> Slices {
     slices
 }
 
-/// Returns the section, for the receiver of the main scene.
+/// The section, for the receiver of the main scene.
 pub(crate) fn power(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let measurement = traced(&scene);

@@ -98,7 +98,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     )
 }
 
-/// Returns the smallest size of a fault that the comparison rejects.
+/// The smallest size of a fault that the comparison rejects.
 fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes

@@ -29,7 +29,7 @@ impl InputKind {
         Self::World,
     ];
 
-    /// Returns the kind of input of a case; 40 % of all cases have scene files as input.
+    /// The kind of input of a case; 40 % of all cases have scene files as input.
     pub(crate) fn of(case: u64) -> Self {
         match case % 20 {
             0..8 => Self::Scene,
@@ -219,7 +219,7 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
     Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
-/// Returns the faults that the exit code, message, time and memory of the process show.
+/// The faults that the exit code, message, time and memory of the process show.
 fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
@@ -249,7 +249,7 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Returns the names of files that the command has changed although it must not change them. A
+/// The names of files that the command has changed although it must not change them. A
 /// command may change only results, and only if it writes results and accepts the input.
 fn wrote(
     mut expected: Folder,

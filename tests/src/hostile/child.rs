@@ -40,7 +40,7 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// Returns the path of the program that is attacked. If no path is given, the program is `etendue`
+/// The path of the program that is attacked. If no path is given, the program is `etendue`
 /// in the folder of this program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
@@ -134,7 +134,7 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// Returns the processor time of a process, in user and kernel mode together.
+/// The processor time of a process, in user and kernel mode together.
 pub(crate) fn work_of(stat: &str) -> Option<Duration> {
     // In this line of /proc, the program name in parentheses may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;

@@ -32,7 +32,7 @@ impl Dice {
         random::words(self.seed, self.stream, self.case, self.block)
     }
 
-    /// Returns a number in 0..`n`, or 0 if `n` is 0.
+    /// A number in 0..`n`, or 0 if `n` is 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         random::index(self.words()[0], n.max(1))
     }
@@ -42,12 +42,12 @@ impl Dice {
         self.below(n) == 0
     }
 
-    /// Returns a random element of a list, which must not be empty.
+    /// A random element of a list, which must not be empty.
     pub(crate) fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len())]
     }
 
-    /// Returns a random length up to `most`. All orders of magnitude of the length are about
+    /// A random length up to `most`. All orders of magnitude of the length are about
     /// equally likely.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
@@ -55,17 +55,17 @@ impl Dice {
         1 + self.below(reach.min(most))
     }
 
-    /// Returns a random byte.
+    /// A random byte.
     pub(crate) fn byte(&mut self) -> u8 {
         self.words()[0].to_le_bytes()[0]
     }
 
-    /// Returns a random number in (0, 1).
+    /// A random number in (0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         random::unit(self.words()[0])
     }
 
-    /// Returns a random number between two bounds.
+    /// A random number between two bounds.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 /// of a subfolder has no bytes; when a folder is read, a link has the bytes of its target's path.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
-/// Returns a folder with the given files.
+/// A folder with the given files.
 pub(crate) fn of<const N: usize>(files: [(&str, Vec<u8>); N]) -> Folder {
     let files = files.map(|(name, bytes)| (name.to_owned(), Some(bytes)));
     Folder::from(files)
@@ -57,7 +57,7 @@ fn read_into(at: &Path, before: &str, found: &mut Folder) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns the names of entries that only one of two folders has, or that differ.
+/// The names of entries that only one of two folders has, or that differ.
 pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str> {
     let names = one
         .keys()

@@ -21,7 +21,7 @@ fn no_mutated_scene_file_panics() {
     assert!(sound > 200 && run > 12, "{sound} sound scenes, {run} run");
 }
 
-/// Returns whether a mutated file is a valid scene, and whether this scene was run.
+/// Whether a mutated file is a valid scene, and whether this scene was run.
 fn tried(seeds: &[String], index: u64) -> [bool; 2] {
     let (_, text) = scenes::mutated(seeds, &mut Dice::new(11, index));
     let text = String::from_utf8_lossy(&text);

@@ -11,19 +11,19 @@ pub(crate) const TAIL: &str = ",\n  \"index_hash\": \"";
 const WORDS: &str = "null | true | [] | {} | \"\" | \\ | \"files\" | \"planes\" | \"batches\" | \
     \"photons\" | \"exact\" | \"reference\" | \"backward\" | \"../a\" | 1e400 | 0.1.1";
 
-/// Returns a mutated text of an index.
+/// A mutated text of an index.
 pub(crate) fn mutated(index: &str, dice: &mut Dice) -> Vec<u8> {
     text::mutated(index, WORDS, dice)
 }
 
-/// Returns the index after a change of one value, with a hash that matches the changed text.
+/// The index after a change of one value, with a hash that matches the changed text.
 pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     change(&mut tree, dice);
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// Returns the index after its scene file is replaced, with hashes that match.
+/// The index after its scene file is replaced, with hashes that match.
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
@@ -36,7 +36,7 @@ pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// Returns the scene file that an index contains, after a change of one value in the scene.
+/// The scene file that an index contains, after a change of one value in the scene.
 pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     let tree: Value = serde_json::from_str(index).ok()?;
     let mut scene = tree["scene_file"].clone();
@@ -44,14 +44,14 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// Returns the index after the hash of the bytes `old` is replaced by the hash of the bytes
+/// The index after the hash of the bytes `old` is replaced by the hash of the bytes
 /// `new`. The index's own hash is updated to match.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))
 }
 
-/// Returns the index with a correct hash of its own, if the index has such a hash.
+/// The index with a correct hash of its own, if the index has such a hash.
 fn sealed(index: &str) -> String {
     match index.find(TAIL) {
         Some(at) => with_own_hash(&index[..at]),

@@ -49,7 +49,7 @@ const PLY: &str = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info n
 /// File names and contents of valid meshes.
 pub(crate) type Meshes = Vec<(&'static str, Vec<u8>)>;
 
-/// Returns the meshes for a blocker and for a mirror.
+/// The meshes for a blocker and for a mirror.
 pub(crate) fn seeds() -> Result<[Meshes; 2], Fault> {
     let star = Mesh::star(1.0, 0.3, 4, 8)?;
     let bowl = Mesh::paraboloid([-0.5, 0.3], 0.5, 16)?;
@@ -93,7 +93,7 @@ fn header(format: &str, mesh: &Mesh) -> String {
     )
 }
 
-/// Returns a mutated mesh in a valid scene.
+/// A mutated mesh in a valid scene.
 pub(crate) fn attack(seeds: &[Meshes; 2], dice: &mut Dice) -> Attack {
     let role = dice.below(2);
     let (name, whole) = dice.pick(&seeds[role]);

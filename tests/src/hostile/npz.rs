@@ -11,7 +11,7 @@ use zip::{ZipArchive, ZipWriter};
 const WORDS: &str = "'>f8' | '<f4' | '<c16' | '<u4' | '|O' | '<U8' | True | False | None | () | \
     (1,) | (18446744073709551615, 2) | (1099511627776,) | 'shape'";
 
-/// Returns the NPZ file after a mutation of one of its arrays or of the archive.
+/// The NPZ file after a mutation of one of its arrays or of the archive.
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
     if dice.one_in(4) {
         let mut new = npz.to_vec();
@@ -60,7 +60,7 @@ fn archive(entries: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     Ok(writer.finish()?.into_inner())
 }
 
-/// Returns the byte offset at which the numbers of an array begin.
+/// The byte offset at which the numbers of an array begin.
 fn data(npy: &[u8]) -> usize {
     let length = npy
         .get(8..10)

@@ -136,7 +136,7 @@ fn one_png(size: [usize; 2], color: png::ColorType, depth: png::BitDepth) -> io:
     Ok(bytes)
 }
 
-/// Returns a mutated picture in a valid scene.
+/// A mutated picture in a valid scene.
 pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     let format = dice.below(2);
     let mut picture = dice.pick(&seeds[format]).clone();

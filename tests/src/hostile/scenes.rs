@@ -29,7 +29,7 @@ const LINKS: [[&str; 2]; 4] = [
 /// Names of folders for results. In some of them, a line begins.
 const FOLDERS: [&str; 5] = ["out", "a\nEND\nLINE", "a\rLINE", "a'\nLINE", "'; LINE"];
 
-/// Returns the texts of all scenes of the repository, without their comments.
+/// The texts of all scenes of the repository, without their comments.
 pub(crate) fn seeds() -> io::Result<Vec<String>> {
     let mut texts = Vec::new();
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
@@ -50,13 +50,13 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
     Ok(texts)
 }
 
-/// Returns one of the scenes, and its text after mutations.
+/// One of the scenes, and its text after mutations.
 pub(super) fn mutated<'a>(seeds: &'a [String], dice: &mut Dice) -> (&'a str, Vec<u8>) {
     let scene: &String = dice.pick(seeds);
     (scene, text::mutated(scene, WORDS, dice))
 }
 
-/// Returns a mutated scene file.
+/// A mutated scene file.
 pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
     let (scene, text) = mutated(seeds, dice);
     Attack {
@@ -68,7 +68,7 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// Returns an attack that gives the program the scene file of a folder. The program always checks
+/// An attack that gives the program the scene file of a folder. The program always checks
 /// the scene, and in one of eight cases, or beside a link, also runs, sweeps or draws it.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();

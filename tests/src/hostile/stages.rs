@@ -27,7 +27,7 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// Returns the text of a second scene, which also contains a mesh from a file. For the scene with
+/// The text of a second scene, which also contains a mesh from a file. For the scene with
 /// a mesh, backward rays replace theory, and the folders of stages contain copies of the mesh
 /// file.
 pub(crate) fn with_mesh() -> String {
@@ -85,18 +85,18 @@ fn seed(program: &Path, at: &Path, scene: &str) -> io::Result<Seed> {
     Ok(Seed { files, summary })
 }
 
-/// Returns a command line without quotes, split into words.
+/// A command line without quotes, split into words.
 pub(crate) fn words(command: &str) -> Vec<String> {
     command.split_whitespace().map(str::to_owned).collect()
 }
 
-/// Returns a mutated part of a measurement.
+/// A mutated part of a measurement.
 pub(crate) fn part(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     let stage = *dice.pick(&["a/", "b/"]);
     attack(dice.pick(seeds), stage, "measurement.json", dice)
 }
 
-/// Returns a mutated prediction.
+/// A mutated prediction.
 pub(crate) fn prediction(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     attack(dice.pick(seeds), "p/", "prediction.json", dice)
 }

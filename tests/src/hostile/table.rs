@@ -43,7 +43,7 @@ impl Tallies {
         tally.peak = tally.peak.max(outcome.peak);
     }
 
-    /// Returns the table, which passes if no case has a fault.
+    /// The table, which passes if no case has a fault.
     pub(crate) fn section(&self, seed: u64) -> ReportSection {
         let pairs = InputKind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally));

@@ -25,7 +25,7 @@ const NAMES: [&str; 14] = [
     "ä€𝄞",
 ];
 
-/// Returns the text after one to three mutations, which replace, remove, double or swap tokens,
+/// The text after one to three mutations, which replace, remove, double or swap tokens,
 /// repeat blocks, or make larger changes. The tokens `words` belong to the format of the text, and
 /// are separated by ` | `.
 pub(crate) fn mutated(text: &str, words: &str, dice: &mut Dice) -> Vec<u8> {
@@ -60,13 +60,13 @@ pub(crate) fn mutated(text: &str, words: &str, dice: &mut Dice) -> Vec<u8> {
     text
 }
 
-/// Returns a critical number.
+/// A critical number.
 fn critical(_: &str, dice: &mut Dice) -> String {
     let numbers: Vec<&str> = NUMBERS.split(' ').collect();
     (*dice.pick(&numbers)).to_owned()
 }
 
-/// Returns a number near the old number, or a valid number of any size.
+/// A number near the old number, or a valid number of any size.
 fn another(old: &str, dice: &mut Dice) -> String {
     if let (Ok(old), true) = (old.parse::<f64>(), dice.one_in(2)) {
         return format!("{:.4}", old * (0.5 + dice.unit()));

@@ -64,7 +64,7 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
 "bufferViews":[{"buffer":0,"byteLength":36}],
 "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
-/// Returns a mutated scene. The program always imports it, and then renders or probes it.
+/// A mutated scene. The program always imports it, and then renders or probes it.
 pub(crate) fn attack(dice: &mut Dice) -> Attack {
     let formats = [
         ("xml", MITSUBA),

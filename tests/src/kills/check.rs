@@ -40,7 +40,7 @@ fn whole(files: &Folder, index: &str, bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Returns the names and hashes listed in an index.
+/// The names and hashes listed in an index.
 pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>> {
     let beside = index.rfind('/').map_or("", |at| &index[..=at]);
     let tree: Value = serde_json::from_slice(bytes).ok()?;

@@ -14,7 +14,7 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// Returns the way that works on this machine. It is a small tmpfs if this process may mount
+    /// The way that works on this machine. It is a small tmpfs if this process may mount
     /// one, and a limit on the size of files otherwise.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;

@@ -30,7 +30,7 @@ impl Verb {
         Self::Figure,
     ];
 
-    /// Returns the name of the index that the command writes into its folder.
+    /// The name of the index that the command writes into its folder.
     pub(super) fn index(self) -> &'static str {
         match self {
             Self::Run | Self::Compare => "summary.json",
@@ -41,7 +41,7 @@ impl Verb {
         }
     }
 
-    /// Returns the command line for a seed; commands with different seeds give different results.
+    /// The command line for a seed; commands with different seeds give different results.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -135,7 +135,7 @@ fn task(
     })
 }
 
-/// Returns the scene file, as placed in the folder of its results, and the mesh that the scene
+/// The scene file, as placed in the folder of its results, and the mesh that the scene
 /// uses.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");

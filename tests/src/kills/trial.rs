@@ -226,7 +226,7 @@ fn is_unfinished(task: &KillTask, name: &str) -> bool {
     name.contains(".etendue") && !is_point
 }
 
-/// Returns the size of a disk that has space for the existing files and for a random part of the
+/// The size of a disk that has space for the existing files and for a random part of the
 /// new files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.

@@ -69,12 +69,12 @@ impl BlockerKind {
 /// gives.
 const SEED: u64 = 1;
 
-/// Returns the random numbers of a scene.
+/// The random numbers of a scene.
 pub(super) fn dice(number: u64) -> Dice {
     Dice::of(Stream::Jitter, SEED, number)
 }
 
-/// Returns a scene of a kind, as the text of its file.
+/// A scene of a kind, as the text of its file.
 pub(super) fn scene(kind: BlockerKind, dice: &mut Dice) -> String {
     let [x, u] = [dice.between(0.15, 0.5), dice.between(0.15, 0.45)];
     let window = match dice.below(4) {
@@ -184,7 +184,7 @@ fn shapes(dice: &mut Dice, square: bool) -> String {
     shapes.join(", ")
 }
 
-/// Returns a floor, the name of the floor, and a plane at the floor.
+/// A floor, the name of the floor, and a plane at the floor.
 fn parallel(kind: BlockerKind, dice: &mut Dice) -> (String, &'static str, String) {
     let z = dice.between(1.1, 2.0);
     let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
@@ -201,7 +201,7 @@ fn parallel(kind: BlockerKind, dice: &mut Dice) -> (String, &'static str, String
     (floor, "floor", format!("(name: \"plane\", {plane})"))
 }
 
-/// Returns a smooth surface, the name of the surface, and a plane behind the surface.
+/// A smooth surface, the name of the surface, and a plane behind the surface.
 fn smooth(kind: BlockerKind, dice: &mut Dice) -> (String, &'static str, String) {
     let angle = dice.between(0.05, 0.7);
     let event = match kind {

@@ -19,7 +19,7 @@ const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
 /// Number of scenes with the largest ratios that are listed.
 const WORST: usize = 12;
 
-/// Returns the probability that the magnitude of a complex deviation exceeds `distance` stated
+/// The probability that the magnitude of a complex deviation exceeds `distance` stated
 /// errors.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
@@ -28,7 +28,7 @@ fn beyond(distance: f64) -> f64 {
 /// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// Returns all tables, including the tables of planted faults.
+/// All tables, including the tables of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
@@ -51,7 +51,7 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
 /// A function that returns whether a kind of scene belongs to a group.
 type Belongs = fn(BlockerKind) -> bool;
 
-/// Returns the section on the fractions of deviations beyond 1, 2 and 3 stated errors, after the
+/// The section on the fractions of deviations beyond 1, 2 and 3 stated errors, after the
 /// errors are multiplied by `scale`.
 fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
@@ -89,7 +89,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     )
 }
 
-/// Returns the table row with the fractions for one group of scenes.
+/// The table row with the fractions for one group of scenes.
 fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let cells = vec![name.to_owned(), of_group.len().to_string()];
     let mut row = Row::new(cells, Vec::new());
@@ -129,7 +129,7 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// Returns the standard error of the squared deviation, averaged over scenes. It is estimated from
+/// The standard error of the squared deviation, averaged over scenes. It is estimated from
 /// the scatter over pairs of nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
@@ -155,7 +155,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
         .push(Check::new("share", off, Below(BORNE)).because("standard errors"));
 }
 
-/// Returns the section with fractions and ratios for each kind of scene.
+/// The section with fractions and ratios for each kind of scene.
 fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     let row = |(kind, name, _): (BlockerKind, &str, usize)| {
         let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
@@ -202,7 +202,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     )
 }
 
-/// Returns the section that lists the scenes with the largest ratios.
+/// The section that lists the scenes with the largest ratios.
 fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
     let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));

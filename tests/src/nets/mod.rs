@@ -8,7 +8,7 @@ mod scene;
 use std::fs;
 use std::process::ExitCode;
 
-/// Returns the text of the scene with the given number; the kinds of scenes alternate with the
+/// The text of the scene with the given number; the kinds of scenes alternate with the
 /// number.
 pub(crate) fn scene(number: u64) -> String {
     let kinds = draw::BlockerKind::ALL;

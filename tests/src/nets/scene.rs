@@ -40,7 +40,7 @@ pub(super) struct Measured {
     pub(super) apart: Vec<f64>,
 }
 
-/// Returns the outcomes of the scenes of each kind. Scenes without a theory and scenes without
+/// The outcomes of the scenes of each kind. Scenes without a theory and scenes without
 /// light are replaced by further random scenes.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
@@ -82,7 +82,7 @@ const PLANTED: f64 = 1.02;
 /// is larger, hardly any light arrives, and the prediction depends on a few rays.
 const DARK: f64 = 0.3;
 
-/// Returns the outcome of a scene, or `None` if no theory applies or no light arrives at the
+/// The outcome of a scene, or `None` if no theory applies or no light arrives at the
 /// plane.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
     let mut dice = draw::dice(number);
@@ -131,7 +131,7 @@ fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     }
 }
 
-/// Returns the squared ratio of L2 error to stated error for the mean of two nets.
+/// The squared ratio of L2 error to stated error for the mean of two nets.
 fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     let mut mean = pair[0].clone();
     mean.half += &pair[1].half;
@@ -164,7 +164,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
     applicability.dark.is_none().then_some(applicability.theory)
 }
 
-/// Returns the prediction by nets of rays for the plane of a scene.
+/// The prediction by nets of rays for the plane of a scene.
 fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -180,7 +180,7 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     })
 }
 
-/// Returns the true spectrum, from a closed form or from a prediction with many rays, and the
+/// The true spectrum, from a closed form or from a prediction with many rays, and the
 /// error of this spectrum.
 fn truth(
     theory: &Theory,
@@ -210,7 +210,7 @@ fn truth(
     Ok((found.slices, found.error))
 }
 
-/// Returns the slices restricted to the frequencies of the plane.
+/// The slices restricted to the frequencies of the plane.
 fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     let mut lower = Slices::zeros(plane.grid);
     for (at, value) in lower.half.indexed_iter_mut() {
@@ -219,13 +219,13 @@ fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     lower
 }
 
-/// Returns the residuals of all replicates (single nets) at one frequency.
+/// The residuals of all replicates (single nets) at one frequency.
 fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
     let replicates = found.replicates.iter();
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
 }
 
-/// Returns Student's t of the real value at zero frequency.
+/// Student's t of the real value at zero frequency.
 fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     let zero = [0, 0, truth.grid.nu.half];
     let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
@@ -233,7 +233,7 @@ fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     mean / error
 }
 
-/// Returns Hotelling's T divided by √2, which equals |d|/σ for circular noise.
+/// Hotelling's T divided by √2, which equals |d|/σ for circular noise.
 fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;

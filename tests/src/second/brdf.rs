@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 const NORMAL: Vector = [0.0, 0.0, 1.0];
 
-/// Returns the BRDF between two unit vectors away from a surface whose normal is along Z, sr⁻¹
+/// The BRDF between two unit vectors away from a surface whose normal is along Z, sr⁻¹
 /// (docs of `etendue_field::Brdf`).
 pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     if from[2] <= 0.0 || to[2] <= 0.0 {
@@ -29,7 +29,7 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     factors * lobe(brdf, incidence, [from, to], fault)
 }
 
-/// Returns the value at an angle, by linear interpolation in a list of values over 0 to 90°.
+/// The value at an angle, by linear interpolation in a list of values over 0 to 90°.
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
@@ -45,7 +45,7 @@ fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     })
 }
 
-/// Returns the value of a BRDF without the angular factors that the BRDF's lists tabulate.
+/// The value of a BRDF without the angular factors that the BRDF's lists tabulate.
 fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let reflected = |angle: f64| brdf.albedo * reflected(&brdf.fresnel, angle, fault);
     match brdf.lobe {
@@ -69,7 +69,7 @@ fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f6
     }
 }
 
-/// Returns the Phong lobe (n + 1)/2π cosⁿ of the angle to the mirror direction, of unit integral
+/// The Phong lobe (n + 1)/2π cosⁿ of the angle to the mirror direction, of unit integral
 /// (Phong 1975).
 fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     let mirror = turned(from, NORMAL, PI);
@@ -84,20 +84,20 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     unit / (2.0 * PI) * (exponent * cosine.ln()).exp()
 }
 
-/// Returns the microfacet normal that reflects one direction into the other.
+/// The microfacet normal that reflects one direction into the other.
 fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     let share = if_planted(fault, "facet closer to one direction", 1.1, 1.0);
     unit(plus(from, share, to))
 }
 
-/// Returns the microfacet BRDF D G F / (4 cos θi cos θo) without its Fresnel factor F (Cook and
+/// The microfacet BRDF D G F / (4 cos θi cos θo) without its Fresnel factor F (Cook and
 /// Torrance 1982; Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let masks = mask(from) * if_planted(fault, "masking in one direction only", 1.0, mask(to));
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Returns Beckmann's density of normals. Each slope of the microfacets is normally distributed
+/// Beckmann's density of normals. Each slope of the microfacets is normally distributed
 /// with variance α²/2. The density of normals per solid angle is the density of slopes times 1/cos⁴
 /// and a constant (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
@@ -108,7 +108,7 @@ fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     (-steep / squared).exp() / (PI * squared) / facet[2].powi(4)
 }
 
-/// Returns the distribution of normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and
+/// The distribution of normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and
 /// Reitz 1975).
 fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = roughness * roughness;
@@ -118,7 +118,7 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     1.0 / (PI * squared * stretched.powf(power))
 }
 
-/// Returns Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s
+/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s
 /// − μ) p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
 /// cotangent of the angle between this direction and the normal. For Beckmann's distribution, p =
 /// exp(−s²/α²)/(α√π), and the integral is over w = s/α.
@@ -131,7 +131,7 @@ fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     integral([from, from + 7.0], 600, exceeds) / from
 }
 
-/// Returns Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)). The integral is over ψ, where s = α
+/// Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)). The integral is over ψ, where s = α
 /// tan ψ.
 fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     let cotangent = 1.0 / angle.tan();
@@ -140,7 +140,7 @@ fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     integral([from, PI / 2.0], 150, exceeds) / cotangent
 }
 
-/// Returns an integral by Simpson's rule, with this many pairs of steps.
+/// An integral by Simpson's rule, with this many pairs of steps.
 fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64 {
     let step = (to - from) / f64::from(2 * pairs);
     let at = |i: u32| value(from + step * f64::from(i));
@@ -148,7 +148,7 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
     step / 3.0 * (at(0) + inner.sum::<f64>() + at(2 * pairs))
 }
 
-/// Returns the reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and
+/// The reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and
 /// along (p) the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle
 /// of refraction follows Snell's law, and is complex if the index is complex. The planted fault
 /// affects only one polarisation, because swapping both polarisations would not change their
@@ -173,7 +173,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     }
 }
 
-/// Returns the direction into which a microfacet reflects another direction.
+/// The direction into which a microfacet reflects another direction.
 pub(super) fn mirrored(from: Vector, facet: Vector) -> Vector {
     plus(from.map(|c| -c), 2.0 * dot(from, facet), facet)
 }

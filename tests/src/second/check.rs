@@ -62,19 +62,19 @@ impl SecondCheck {
     }
 }
 
-/// Returns the largest of some differences.
+/// The largest of some differences.
 pub(super) fn largest(count: u32, difference: impl FnMut() -> f64) -> f64 {
     std::iter::repeat_with(difference)
         .take(count as usize)
         .fold(0.0, worse)
 }
 
-/// Returns a value that is wrong if the named fault is planted, and right otherwise.
+/// A value that is wrong if the named fault is planted, and right otherwise.
 pub(super) fn if_planted<T>(fault: &str, name: &str, wrong: T, right: T) -> T {
     if fault == name { wrong } else { right }
 }
 
-/// Returns the difference between two numbers, divided by the larger of their magnitudes.
+/// The difference between two numbers, divided by the larger of their magnitudes.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     let larger = worse(a.abs(), b.abs());
     if larger > 0.0 {

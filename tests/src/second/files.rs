@@ -31,7 +31,7 @@ const FAULTS: &[&str] = &[
 /// The file name of the picture.
 const FILE: &str = "blend.png";
 
-/// Returns the luminance of red, green and blue (Rec. ITU-R BT.709).
+/// The luminance of red, green and blue (Rec. ITU-R BT.709).
 pub(super) fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.212_671 * r + 0.715_160 * g + 0.072_169 * b
 }

@@ -120,14 +120,14 @@ fn of_sum(name: &'static str, fast: FastSum) -> SecondCheck {
     }
 }
 
-/// Returns the largest relative difference between both implementations of a BRDF with the given
+/// The largest relative difference between both implementations of a BRDF with the given
 /// kind of lobe.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
     let brdf = Brdf::new(lobe(dice), dice.unit(), fresnel(dice));
     compared(fast, &brdf, dice, fault)
 }
 
-/// Returns the largest relative difference between both implementations of a Phong lobe that is
+/// The largest relative difference between both implementations of a Phong lobe that is
 /// multiplied by tables of factors, one over the incoming angle and one over the outgoing angle.
 fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     let exponent = scale(dice, 0.1, 1e3);
@@ -146,7 +146,7 @@ fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     compared(fast, &brdf, dice, fault)
 }
 
-/// Returns the largest relative difference between both implementations of a weighted sum of
+/// The largest relative difference between both implementations of a weighted sum of
 /// BRDFs.
 fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
     let mut term = |exponent: f64| Term {
@@ -194,7 +194,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
     }
 }
 
-/// Returns a random direction within the lobe, which is occasionally below the surface.
+/// A random direction within the lobe, which is occasionally below the surface.
 fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
     match lobe {
         Lobe::Lambertian => direction(dice),

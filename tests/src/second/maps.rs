@@ -109,7 +109,7 @@ impl Met {
         }
     }
 
-    /// Returns the origin and direction of the ray with coordinates (x, y, u, v) at the light.
+    /// The origin and direction of the ray with coordinates (x, y, u, v) at the light.
     fn emitted(&self, [x, y, u, v]: [f64; 4]) -> (Vector, Vector) {
         let light = &self.world.light;
         (light.point([x, y, 0.0]), unit(light.vector([u, v, 1.0])))

@@ -69,7 +69,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns a world with a wall, the center of a random layer before the wall as coordinates along X
+/// A world with a wall, the center of a random layer before the wall as coordinates along X
 /// and Y, and the text of the layer's name and center.
 pub(super) fn layer(dice: &mut Dice) -> (World, [f64; 2], String) {
     let world = World::new(dice).with_wall(1.0);
@@ -78,7 +78,7 @@ pub(super) fn layer(dice: &mut Dice) -> (World, [f64; 2], String) {
     (world, [x, y], format!("name: \"b\", center: {center}"))
 }
 
-/// Returns a point relative to the center of a layer, wrong if `fault` is a fault of points.
+/// A point relative to the center of a layer, wrong if `fault` is a fault of points.
 pub(super) fn misplaced(at: [f64; 2], center: [f64; 2], fault: &str) -> [f64; 2] {
     match fault {
         "x and y swapped" | "axes swapped" => [at[1], at[0]],
@@ -311,7 +311,7 @@ fn window(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// Returns the value of a profile of a window.
+/// The value of a profile of a window.
 pub(super) fn value(profile: &Profile, t: f64, fault: &str) -> f64 {
     let half = if_planted(fault, "half-width taken as the width", 0.5, 1.0);
     let power = if_planted(fault, "cosine not squared", 1, 2);

@@ -101,7 +101,7 @@ struct Hill {
 }
 
 impl Hill {
-    /// Returns a random mesh; the planted fault is in the second implementation, not in the
+    /// A random mesh; the planted fault is in the second implementation, not in the
     /// scene.
     fn new(dice: &mut Dice, fault: &str) -> Self {
         let tilt = dice.between(0.0, 0.8);
@@ -135,7 +135,7 @@ impl Hill {
         }
     }
 
-    /// Returns the slopes of the paraboloid at the hit.
+    /// The slopes of the paraboloid at the hit.
     fn slopes(&self) -> [f64; 2] {
         [0, 1].map(|i| -self.curvature[i] * self.at[i])
     }
@@ -147,7 +147,7 @@ impl Hill {
         hit.map_or(1.0, |hit| distance(hit.normal.to_array(), normal))
     }
 
-    /// Returns the curvature of the normal section along (dx, dy, p dx + q dy): the second
+    /// The curvature of the normal section along (dx, dy, p dx + q dy): the second
     /// fundamental form divided by the first (do Carmo 1976, section 3.3). The returned curvature
     /// is positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {

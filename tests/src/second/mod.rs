@@ -86,7 +86,7 @@ fn checks() -> io::Result<Vec<SecondCheck>> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// Returns one table row for each planted fault.
+/// One table row for each planted fault.
 fn rows(check: &SecondCheck) -> Vec<Row> {
     let outcome = check.run();
     let (tolerance, reason) = check.tolerance;

@@ -58,7 +58,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
 }
 
 impl Legs {
-    /// Returns the frames at a mirror.
+    /// The frames at a mirror.
     pub(super) fn at_mirror(light: &Axes, smooth: &Smooth, fault: &str) -> Self {
         let (d, n) = (light.d, smooth.axes.d);
         let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
@@ -101,7 +101,7 @@ impl Legs {
         }
     }
 
-    /// Returns the frame after a change of direction. If the event is a reflection, the frame of
+    /// The frame after a change of direction. If the event is a reflection, the frame of
     /// the arriving ray is mirrored, and its X is reversed. Then the frame is rotated by the
     /// smallest angle to the new direction.
     pub(super) fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
@@ -129,13 +129,13 @@ impl Legs {
     }
 }
 
-/// Returns a direction that leaves a surface on the side of the arriving light.
+/// A direction that leaves a surface on the side of the arriving light.
 fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
     let tilt = dice.between(0.0, 1.3);
     super::vector::aside(dice, normal, tilt)
 }
 
-/// Returns a random event of the central ray at a surface, and the text of the event in a scene
+/// A random event of the central ray at a surface, and the text of the event in a scene
 /// file.
 fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
     let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);

@@ -23,7 +23,7 @@ pub(super) enum Pattern {
 }
 
 impl Pattern {
-    /// Returns the value of the pattern at a point, given by its coordinates along the axes of
+    /// The value of the pattern at a point, given by its coordinates along the axes of
     /// the surface.
     pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
         let [s, t] = match fault {
@@ -39,7 +39,7 @@ impl Pattern {
     }
 }
 
-/// Returns the value ½ (1 + m cos(2π f t + p)) of a grating.
+/// The value ½ (1 + m cos(2π f t + p)) of a grating.
 pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     let angle = TAU * grating.frequency * at[grating.axis];
     let angle = if_planted(
@@ -51,7 +51,7 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
-/// Returns a checkerboard. Squares of half a period are counted along both axes from the vertex,
+/// A checkerboard. Squares of half a period are counted along both axes from the vertex,
 /// and the value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = if_planted(fault, "a side taken as a period", period, period / 2.0);
@@ -66,7 +66,7 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// Returns the value of a picture that is centred at the vertex, with its top towards Y. The
+    /// The value of a picture that is centred at the vertex, with its top towards Y. The
     /// picture is bilinear between pixel centres, constant beyond the outermost centres, and 0
     /// beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
@@ -93,7 +93,7 @@ impl Levels {
     }
 }
 
-/// Returns the index of the last pixel centre before a position, and the position between this
+/// The index of the last pixel centre before a position, and the position between this
 /// centre and the next as a fraction. Positions beyond the outermost pixel centres are clamped to
 /// these centres.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
@@ -120,7 +120,7 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// Returns two BRDFs with their weights at a point. The weight of `brdf` is the value of the
+    /// Two BRDFs with their weights at a point. The weight of `brdf` is the value of the
     /// blend, and the weight of `other` is one minus this value. The value of the texture
     /// multiplies the weights of both BRDFs.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {

@@ -47,7 +47,7 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns the axes of a map, in which Y is `up`, Z is the component of `front` orthogonal to Y,
+/// The axes of a map, in which Y is `up`, Z is the component of `front` orthogonal to Y,
 /// and X = Y × Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
@@ -58,7 +58,7 @@ fn axes(dice: &mut Dice) -> (Axes, String) {
     (Axes::new([0.0; 3], up, front), text)
 }
 
-/// Returns the components of a direction along the map's axes X, up and front.
+/// The components of a direction along the map's axes X, up and front.
 fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     if fault == "axes of the world" {
         return from;
@@ -67,13 +67,13 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     [x, up, front]
 }
 
-/// Returns the direction from which light comes, opposite to the direction in which light
+/// The direction from which light comes, opposite to the direction in which light
 /// travels.
 fn origin(along: Vector, fault: &str) -> Vector {
     if_planted(fault, "the way light goes", along, times(-1.0, along))
 }
 
-/// Returns the radiance of the scene's light along a direction of the world.
+/// The radiance of the scene's light along a direction of the world.
 fn fast(world: &World, light: &Light, along: Vector) -> f64 {
     let Light::Environment { environment } = light else {
         return f64::NAN;
@@ -98,7 +98,7 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
 }
 
 impl Levels {
-    /// Returns the radiance of a map from the direction with components (x, up, front). In a map
+    /// The radiance of a map from the direction with components (x, up, front). In a map
     /// with w columns, the centre of column i is at longitude π (1 − (2 i + 1)/w), counted from
     /// the front towards x. In a map with h rows, the centre of row j is at latitude π (½ − (j +
     /// ½)/h). The map is interpolated bilinearly, and periodically in longitude. Between the

@@ -23,7 +23,7 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// Returns a surface with its vertex on the central ray, tilted by up to `most` radians, and
+    /// A surface with its vertex on the central ray, tilted by up to `most` radians, and
     /// the scene-file text of this surface without its event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
         let tilt = dice.between(0.1, most);
@@ -59,7 +59,7 @@ impl Smooth {
         (smooth, words)
     }
 
-    /// Returns the surface after the named fault is planted in it.
+    /// The surface after the named fault is planted in it.
     pub(super) fn wrong(mut self, fault: &str) -> Self {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
@@ -77,13 +77,13 @@ impl Smooth {
         self
     }
 
-    /// Returns the centre of the ball, or the point of the bar's axis nearest to the vertex; if
+    /// The centre of the ball, or the point of the bar's axis nearest to the vertex; if
     /// the surface is convex, this point is behind the vertex.
     fn middle(&self, k: f64) -> Vector {
         plus(self.axes.origin, -1.0 / k, self.axes.d)
     }
 
-    /// Returns the point of the surface with the coordinates s and t on its tangent plane.
+    /// The point of the surface with the coordinates s and t on its tangent plane.
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
         // Returns the depth of a circle of radius 1/k below its tangent.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
@@ -96,7 +96,7 @@ impl Smooth {
         self.axes.point([s, t, -below])
     }
 
-    /// Returns the normal of the surface at a point, on the side that the surface faces.
+    /// The normal of the surface at a point, on the side that the surface faces.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         match self.form {
             Form::Plane => self.axes.d,
@@ -109,12 +109,12 @@ impl Smooth {
         }
     }
 
-    /// Returns the component of a vector perpendicular to the bar, whose axis is along Y.
+    /// The component of a vector perpendicular to the bar, whose axis is along Y.
     fn round(&self, a: Vector) -> Vector {
         plus(a, -dot(a, self.axes.y), self.axes.y)
     }
 
-    /// Returns the distances of hits along a ray with a unit direction, nearest first.
+    /// The distances of hits along a ray with a unit direction, nearest first.
     pub(super) fn hits(&self, start: Vector, towards: Vector) -> Vec<f64> {
         let roots = match self.form {
             Form::Plane => {
@@ -146,7 +146,7 @@ impl Smooth {
         met
     }
 
-    /// Returns whether a point of the solid's surface is within the aperture and in the half of
+    /// Whether a point of the solid's surface is within the aperture and in the half of
     /// the solid around the vertex.
     fn holds(&self, point: Vector) -> bool {
         let [s, t, _] = self.axes.coordinates(point);

@@ -61,7 +61,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// Returns a scene with a surface, the equivalent solid, and the resolved surface.
+/// A scene with a surface, the equivalent solid, and the resolved surface.
 fn surface(dice: &mut Dice) -> (World, Smooth, Patch) {
     let mut world = World::new(dice);
     let (smooth, words) = Smooth::new(dice, &world, 1.0);
@@ -153,7 +153,7 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
     }
 }
 
-/// Returns the direction after refraction, by Snell's law in angles (Born and Wolf 1999, 1.5.1);
+/// The direction after refraction, by Snell's law in angles (Born and Wolf 1999, 1.5.1);
 /// `None` for total reflection.
 pub(super) fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
     let is_from_front = dot(along, normal) < 0.0;

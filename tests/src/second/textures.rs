@@ -67,7 +67,7 @@ fn blended(dice: &mut Dice, fault: &str) -> f64 {
     apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// Returns the largest difference between the weights of a BRDF in two sums; if only one sum
+/// The largest difference between the weights of a BRDF in two sums; if only one sum
 /// contains the BRDF, its weight in the other sum counts as zero.
 pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
     let weight = |brdf: &Brdf| {

@@ -41,17 +41,17 @@ pub(super) fn distance(a: Vector, b: Vector) -> f64 {
     length(plus(a, -1.0, b))
 }
 
-/// Returns the angle between two directions, accurate for small angles.
+/// The angle between two directions, accurate for small angles.
 pub(super) fn angle(a: Vector, b: Vector) -> f64 {
     length(cross(a, b)).atan2(dot(a, b))
 }
 
-/// Returns the component of a vector orthogonal to a unit vector, normalised.
+/// The component of a vector orthogonal to a unit vector, normalised.
 pub(super) fn across(a: Vector, normal: Vector) -> Vector {
     unit(plus(a, -dot(a, normal), normal))
 }
 
-/// Returns a vector rotated about a unit vector (Rodrigues 1840).
+/// A vector rotated about a unit vector (Rodrigues 1840).
 pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     let along = times(dot(a, axis), axis);
     let aside = plus(a, -1.0, along);
@@ -59,7 +59,7 @@ pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     plus(along, 1.0, turned)
 }
 
-/// Returns a vector after the smallest rotation that takes one unit vector to another.
+/// A vector after the smallest rotation that takes one unit vector to another.
 pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
     let axis = cross(from, to);
     if length(axis) < 1e-12 {
@@ -86,12 +86,12 @@ impl Axes {
         Self { origin, x, y, d }
     }
 
-    /// Returns the vector with the given components along X, Y and D.
+    /// The vector with the given components along X, Y and D.
     pub(super) fn vector(&self, [a, b, c]: Vector) -> Vector {
         plus(plus(times(a, self.x), b, self.y), c, self.d)
     }
 
-    /// Returns the point with the given coordinates along X, Y and D.
+    /// The point with the given coordinates along X, Y and D.
     pub(super) fn point(&self, at: Vector) -> Vector {
         plus(self.origin, 1.0, self.vector(at))
     }
@@ -107,23 +107,23 @@ impl Axes {
         }
     }
 
-    /// Returns the components of a vector along X, Y and D.
+    /// The components of a vector along X, Y and D.
     pub(super) fn components(&self, a: Vector) -> Vector {
         [dot(a, self.x), dot(a, self.y), dot(a, self.d)]
     }
 
-    /// Returns the coordinates of a point along X, Y and D.
+    /// The coordinates of a point along X, Y and D.
     pub(super) fn coordinates(&self, point: Vector) -> Vector {
         self.components(plus(point, -1.0, self.origin))
     }
 }
 
-/// Returns a random number between two bounds; its logarithm is uniformly distributed.
+/// A random number between two bounds; its logarithm is uniformly distributed.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
 }
 
-/// Returns a random direction.
+/// A random direction.
 pub(super) fn direction(dice: &mut Dice) -> Vector {
     let height = dice.between(-1.0, 1.0);
     let around = dice.between(0.0, TAU);
@@ -131,7 +131,7 @@ pub(super) fn direction(dice: &mut Dice) -> Vector {
     [across * around.cos(), across * around.sin(), height]
 }
 
-/// Returns a random direction at the given angle to a unit vector.
+/// A random direction at the given angle to a unit vector.
 pub(super) fn aside(dice: &mut Dice, from: Vector, by: f64) -> Vector {
     let axis = across(direction(dice), from);
     unit(turned(from, axis, by.min(PI)))

@@ -127,7 +127,7 @@ impl Looking<'_> {
         }
     }
 
-    /// Returns how far coordinates, weight and the factor of differential irradiance deviate from
+    /// How far coordinates, weight and the factor of differential irradiance deviate from
     /// values computed from the same ray at a plane perpendicular to the leg.
     fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
         let ray = across.ray;
@@ -154,7 +154,7 @@ impl Looking<'_> {
         worse(z, factors)
     }
 
-    /// Returns the coordinates of the ray through a point along a unit vector.
+    /// The coordinates of the ray through a point along a unit vector.
     pub(super) fn seen(&self, foot: Vector, along: Vector, fault: &str) -> Option<[f64; 4]> {
         if self.view == View::Across {
             let [x, y, z] = self.leg.coordinates(foot);
@@ -181,7 +181,7 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// Returns the point where the line of a ray meets the plane's surface, and the normal at this
+    /// The point where the line of a ray meets the plane's surface, and the normal at this
     /// point. If there are several such points, returns the point nearest to the central hit.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;

@@ -72,7 +72,7 @@ impl World {
         resolve("second", file, folder, u64::MAX).unwrap_or_else(|error| panic!("{error}: {text}"))
     }
 
-    /// Returns a point of the world in the coordinates of the resolved scene, which are coordinates
+    /// A point of the world in the coordinates of the resolved scene, which are coordinates
     /// in the frame at the light.
     pub(super) fn resolved(&self, point: Vector) -> Vector {
         self.light.coordinates(point)
@@ -88,7 +88,7 @@ pub(super) fn pair([a, b]: [f64; 2]) -> String {
     format!("({a:?}, {b:?})")
 }
 
-/// Returns the largest difference between two frames, over position and directions.
+/// The largest difference between two frames, over position and directions.
 pub(super) fn frames_apart(fast: &Frame, axes: &Axes) -> f64 {
     let pairs = [
         (fast.origin, axes.origin),

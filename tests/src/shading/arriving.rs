@@ -20,7 +20,7 @@ pub(super) struct Sphere<'a> {
 }
 
 impl Sphere<'_> {
-    /// Returns the windowed spectrum at the scene's plane on the sphere, in local normals.
+    /// The windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
     /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated
     /// about the normal. `turn` is +1 if the angles (θ, φ) are not rotated about the normal.

@@ -12,7 +12,7 @@ const DIGITS: f64 = 1e-6;
 /// of the circle.
 const IMAGE: f64 = 0.01;
 
-/// Returns the scene from which the sweeps start.
+/// The scene from which the sweeps start.
 pub(super) fn criterion(curvature: f64, angle: f64, distance: f64, blocker: f64) -> Criterion {
     Criterion {
         curvature,
@@ -79,7 +79,7 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
     all
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn bandwidths() -> ReportSection {
     let mut rows = Vec::new();
     for (name, criterion) in sweeps() {

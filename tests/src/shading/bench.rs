@@ -48,7 +48,7 @@ impl Bench {
         said(&view, &self.scene.planes[0])
     }
 
-    /// Returns the photons of a modified scene, with modified crossings.
+    /// The photons of a modified scene, with modified crossings.
     pub(super) fn tampered(
         &self,
         change: impl Fn(&mut Scene),
@@ -59,7 +59,7 @@ impl Bench {
         tampered(&scene, |_, c| Some(crossing(&self.scene, c)))
     }
 
-    /// Returns the p-value of the comparison of photons with a prediction.
+    /// The p-value of the comparison of photons with a prediction.
     ///
     /// # Panics
     /// Panics if there is no light and no light is predicted.
@@ -68,7 +68,7 @@ impl Bench {
         p.expect("light")
     }
 
-    /// Returns the norm of the difference of two slices, ‖a − b‖, divided by the norm of the
+    /// The norm of the difference of two slices, ‖a − b‖, divided by the norm of the
     /// prediction without a fault.
     pub(super) fn apart(&self, a: &Slices, b: &Slices) -> f64 {
         let norm = |values: &mut dyn Iterator<Item = Complex>| {
@@ -79,7 +79,7 @@ impl Bench {
     }
 }
 
-/// Returns the measured slices.
+/// The measured slices.
 ///
 /// # Panics
 /// Panics if there are too few batches.
@@ -98,7 +98,7 @@ fn said(view: &Observed, plane: &VirtualPlane) -> Slices {
     exact
 }
 
-/// Returns the BRDF of a scene, for modification.
+/// The BRDF of a scene, for modification.
 ///
 /// # Panics
 /// Panics if the scene has no BRDF.
@@ -120,7 +120,7 @@ pub(super) fn each_weight(reflectance: &mut Reflectance, change: impl Fn(&mut Gr
     }
 }
 
-/// Returns two unit vectors in the axes (T, B, N) of a flat surface: the direction of a photon,
+/// Two unit vectors in the axes (T, B, N) of a flat surface: the direction of a photon,
 /// and the direction from the photon's position to a projector.
 pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let plane = &scene.planes[0];

@@ -72,7 +72,7 @@ fn replicas() -> Statement {
     }
 }
 
-/// Returns the 90 % bandwidth of Fourier coefficients c_n: the smallest |n| below which 90 % of
+/// The 90 % bandwidth of Fourier coefficients c_n: the smallest |n| below which 90 % of
 /// their energy lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
@@ -208,7 +208,7 @@ fn wedge() -> Vec<Statement> {
     ]
 }
 
-/// Returns E(x) = ∫ cos θ dθ, in closed form, over the directions in which the light is visible
+/// E(x) = ∫ cos θ dθ, in closed form, over the directions in which the light is visible
 /// through strips.
 fn irradiance(x: f64, pitch: f64, phase: f64) -> f64 {
     let distance = BEFORE + AFTER;

@@ -22,7 +22,7 @@ pub(super) const GLOSS: PlanarLobe = PlanarLobe::Gaussian { deviation: 0.12 };
 const PHONG: PlanarLobe = PlanarLobe::Phong { exponent: 30.0 };
 const SCHLICK: Schlick = Schlick(0.04);
 
-/// Returns the theory's operators for reflection by a BRDF that is a sum of separable terms.
+/// The theory's operators for reflection by a BRDF that is a sum of separable terms.
 pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
     PlanarReflection {
         incidence: THETA0,
@@ -35,7 +35,7 @@ pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> 
     }
 }
 
-/// Returns the surface of [`reflection`] in the primal domain, with a clamped cosine.
+/// The surface of [`reflection`] in the primal domain, with a clamped cosine.
 pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> PrimalSurface<'a> {
     PrimalSurface {
         theta0: THETA0,
@@ -78,13 +78,13 @@ pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
 
-/// Returns the Fourier transform of [`lopsided`].
+/// The Fourier transform of [`lopsided`].
 pub(super) fn lopsided_hat(q: f64) -> Complex {
     let side = cosine_hat(q - 1.0 / TAU) - cosine_hat(q + 1.0 / TAU);
     Complex::new(cosine_hat(q), -0.3 * side)
 }
 
-/// Returns the comparisons that involve all steps of a reflection at a surface.
+/// The comparisons that involve all steps of a reflection at a surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = separable();
     rows.extend(sums());
@@ -234,17 +234,17 @@ fn separable() -> Vec<OperatorComparison> {
     rows.into()
 }
 
-/// Returns Schlick's reflectance times the cosine.
+/// Schlick's reflectance times the cosine.
 fn schlick(theta: f64) -> f64 {
     SCHLICK.reflectance(theta) * theta.cos()
 }
 
-/// Returns the Fourier transform of [`schlick`] on the half-circle.
+/// The Fourier transform of [`schlick`] on the half-circle.
 fn schlick_hat(q: f64) -> Complex {
     SCHLICK.cosine_hat(q).into()
 }
 
-/// Returns the Fourier transform of cos³ on the half-circle, where it is (3 cos θ + cos 3θ)/4.
+/// The Fourier transform of cos³ on the half-circle, where it is (3 cos θ + cos 3θ)/4.
 fn cosine_cubed_hat(q: f64) -> Complex {
     let third = 3.0 / TAU;
     let half = |t: f64| {
@@ -312,7 +312,7 @@ fn sums() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Returns the waves of mean + 2 amplitude cos(2π f s + 0.4), for the frequency f.
+/// The waves of mean + 2 amplitude cos(2π f s + 0.4), for the frequency f.
 fn waves(mean: f64, frequency: f64, amplitude: f64) -> [TextureWave; 3] {
     let side = Complex::from_polar(amplitude, 0.4);
     [

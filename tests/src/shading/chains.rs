@@ -49,7 +49,7 @@ fn surface(chain: &PathChain) -> &ScatteringSurface {
     &chain.scatterers[0]
 }
 
-/// Returns the map into local normals, for light that leaves the surface.
+/// The map into local normals, for light that leaves the surface.
 fn forth(chain: &PathChain) -> AffineMap<4> {
     AffineMap::<4>::curvature(surface(chain).curvature, surface(chain).outgoing[0])
 }
@@ -59,7 +59,7 @@ fn row(map: &mut AffineMap<4>, row: usize, by: f64) {
     map.offset[row] *= by;
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();

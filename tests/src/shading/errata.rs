@@ -39,7 +39,7 @@ struct Erratum {
     at_most: f64,
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn errata() -> ReportSection {
     let mut all = irradiance();
     all.extend(brdf());

@@ -23,7 +23,7 @@ struct EyeHit {
 }
 
 impl EyeScene {
-    /// Returns the point at which the circle is hit by the ray that reaches the eye with this
+    /// The point at which the circle is hit by the ray that reaches the eye with this
     /// slope.
     fn hit(&self, slope: f64) -> EyeHit {
         let c = &self.criterion;
@@ -43,14 +43,14 @@ impl EyeScene {
         }
     }
 
-    /// Returns the angle of the light that a mirror would send into an eye ray, and the point
+    /// The angle of the light that a mirror would send into an eye ray, and the point
     /// where this light crosses the plane of the blocker.
     fn origin(&self, slope: f64) -> [f64; 2] {
         let hit = self.hit(slope);
         self.from(&hit, self.aside() - hit.local)
     }
 
-    /// Returns the angle from the mirror direction to the outgoing central ray; this angle does
+    /// The angle from the mirror direction to the outgoing central ray; this angle does
     /// not depend on the lobe.
     fn aside(&self) -> f64 {
         self.criterion.incidence + self.criterion.outgoing
@@ -67,7 +67,7 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// Returns three bandwidths at the eye, which are B, B' and a maximum bandwidth. For the
+    /// Three bandwidths at the eye, which are B, B' and a maximum bandwidth. For the
     /// maximum, the environment has frequencies up to Ω_e, and the blocker has all frequencies that
     /// keep the summed frequency on the surface below Ω_ρ.
     pub(super) fn traced(&self) -> [f64; 3] {
@@ -89,7 +89,7 @@ impl EyeScene {
         [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
     }
 
-    /// Returns the frequency below which 99 % of the energy of an image lies, divided by the
+    /// The frequency below which 99 % of the energy of an image lies, divided by the
     /// predicted frequency. The Gaussian lobe is so narrow that angles are linear functions of the
     /// position within its image. The image shows a distant point. If `edge` is set, the derivative
     /// of the image of an edge is used instead.
@@ -142,7 +142,7 @@ impl EyeScene {
     }
 }
 
-/// Returns the derivative by central differences, extrapolated.
+/// The derivative by central differences, extrapolated.
 fn derivative(f: &dyn Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let slope = |h: f64, i: usize| (f(h)[i] - f(-h)[i]) / (2.0 * h);
     [0, 1].map(|i| (4.0 * slope(0.5 * STEP, i) - slope(STEP, i)) / 3.0)

@@ -14,7 +14,7 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Returns the 24 frequencies at which transforms are compared, in cycles per radian.
+/// The 24 frequencies at which transforms are compared, in cycles per radian.
 fn line() -> Vec<f64> {
     (0..24).map(|i| 0.26 * f64::from(i) + 0.01).collect()
 }
@@ -23,7 +23,7 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(|omega| f(omega).into()).collect()
 }
 
-/// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
+/// The transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
 /// 0. The panels of the quadrature are finer near θ = 0 and near `end`.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
@@ -43,7 +43,7 @@ fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(panels).collect()
 }
 
-/// Returns the comparisons of single factors, without a surface.
+/// The comparisons of single factors, without a surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = cosines();
     rows.extend(fresnel());
@@ -99,7 +99,7 @@ fn cosines() -> Vec<OperatorComparison> {
     ]
 }
 
-/// Returns the coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full
+/// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full
 /// circle, which is [`cosine_hat`](n/2π)/2π.
 ///
 /// Durand et al. 2005 print only the transform (Eq. 13).
@@ -300,12 +300,12 @@ const SKY: [Glow; 2] = [
     },
 ];
 
-/// Returns the spectrum of [`SKY`].
+/// The spectrum of [`SKY`].
 pub(super) fn sky_hat(w: f64) -> Complex {
     SKY.iter().map(|glow| glow.spectrum(w)).sum()
 }
 
-/// Returns the transform, by quadrature, of the field dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r' of
+/// The transform, by quadrature, of the field dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r' of
 /// the environment [`SKY`]. The width of this field over s is the width of the environment's
 /// Gaussians divided by |k|.
 pub(super) fn mirrored_sky(k: f64, [x, t]: [f64; 2]) -> Complex {

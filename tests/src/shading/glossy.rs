@@ -94,7 +94,7 @@ fn sweeps() -> Vec<GlossySweep> {
     ]
 }
 
-/// Returns the section on the sweeps and the picture that plots them.
+/// The section on the sweeps and the picture that plots them.
 ///
 /// # Panics
 /// Panics if a scene cannot be measured.
@@ -224,14 +224,14 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// Returns the range of measured bandwidths that agree with the `bandwidth` of a criterion; the
+/// The range of measured bandwidths that agree with the `bandwidth` of a criterion; the
 /// window may widen the spectrum by at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// Returns the measured points, and the curves that the criteria predict.
+/// The measured points, and the curves that the criteria predict.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
     // Four digits are sufficient for the points of a curve.

@@ -83,7 +83,7 @@ impl GlossyBench {
         Self { lobe, ..self }
     }
 
-    /// Returns the bench with light that arrives at an angle in degrees.
+    /// The bench with light that arrives at an angle in degrees.
     pub(super) fn seen_at(self, angle: f64) -> Self {
         let incidence = angle.to_radians();
         Self { incidence, ..self }
@@ -169,7 +169,7 @@ impl GlossyBench {
         found.expect("across a ray that left a glossy surface")
     }
 
-    /// Returns the bandwidth that the criterion predicts, in its corrected form and as printed.
+    /// The bandwidth that the criterion predicts, in its corrected form and as printed.
     pub(super) fn says(&self, c: &Criterion) -> [f64; 2] {
         match self.lit {
             Lit::Beam => [c.environment(), c.printed_environment()],

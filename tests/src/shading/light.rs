@@ -103,7 +103,7 @@ impl PrimalSurface<'_> {
         pieces.flatten().collect()
     }
 
-    /// Returns the transform of the reflected light field in the outgoing light frame. All outgoing
+    /// The transform of the reflected light field in the outgoing light frame. All outgoing
     /// angles and positions are linear in the incoming angle and position: x = −c₀ s, θ = θ_i' + k
     /// s − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {

@@ -26,7 +26,7 @@ struct Misprint {
     said: Slices,
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
     let photons = photons.or(Some(PHOTONS));
     let all = [diffuse(photons), mirror(photons), environment(photons)];
@@ -117,7 +117,7 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     (Bench::of(scene, sound), vec![misprint])
 }
 
-/// Returns the scene with the environment and a single plane, which records the arriving light.
+/// The scene with the environment and a single plane, which records the arriving light.
 pub(super) fn arriving(photons: Option<u64>) -> Scene {
     let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
     let edits = [("planes: [", &*format!("planes: [{plane}"))];

@@ -35,7 +35,7 @@ pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;
 
-/// Returns all sections. Sections in 2D need no photons. The other sections trace `photons` photons
+/// All sections. Sections in 2D need no photons. The other sections trace `photons` photons
 /// in each scene. If `photons` is `None`, they trace the number of photons in the scene's file.
 pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
@@ -49,7 +49,7 @@ pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     sections
 }
 
-/// Returns the sections that trace photons.
+/// The sections that trace photons.
 fn with_photons(photons: Option<u64>) -> Vec<ReportSection> {
     vec![
         photons::photons(photons),

@@ -22,7 +22,7 @@ pub(super) struct OperatorComparison {
     pub(super) fault: (&'static str, f64),
 }
 
-/// Returns the section on all operators of shading in 2D.
+/// The section on all operators of shading in 2D.
 pub(super) fn operators() -> ReportSection {
     let row = |found: OperatorComparison| {
         let cells = vec![

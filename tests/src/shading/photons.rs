@@ -15,7 +15,7 @@ const ALPHA: f64 = 0.01;
 /// Maximum rounding error of the flux balance relative to the emitted flux.
 const LEDGER: f64 = 1e-12;
 
-/// Returns the section on all planes. Each scene is traced with `photons` photons. If `photons` is
+/// The section on all planes. Each scene is traced with `photons` photons. If `photons` is
 /// `None`, each scene is traced with the number of photons in its file.
 pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
@@ -95,7 +95,7 @@ fn row(outcome: &ComparedScene, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(lines)
 }
 
-/// Returns the name of the last step before a plane, and the rows of the paper's Table 1 that
+/// The name of the last step before a plane, and the rows of the paper's Table 1 that
 /// describe this step.
 fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     let (word, line) = match (plane.leg, plane.orientation, plane.quantity) {
@@ -115,7 +115,7 @@ fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     (word.to_owned(), vec![line])
 }
 
-/// Returns the BRDF of the first surface in a scene.
+/// The BRDF of the first surface in a scene.
 fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let hit = scene.path.legs[1].leaves.map(|hit| hit.object);
     let Some(Object::Patch(i)) = hit else {

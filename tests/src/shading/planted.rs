@@ -39,7 +39,7 @@ struct Stand {
     faults: Vec<(&'static str, Plant)>,
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
     // The bench that records arriving light is not in the list and counts as one more bench.
@@ -86,7 +86,7 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
 }
 
 impl Plant {
-    /// Returns the p-value of the comparison with the fault, and the relative change of the
+    /// The p-value of the comparison with the fault, and the relative change of the
     /// spectrum that the fault causes.
     fn judged(&self, bench: &Bench) -> (f64, f64) {
         let by_prediction = |said: &Slices| {
@@ -227,7 +227,7 @@ fn texture(reflectance: &mut Reflectance, factor: f64) {
     }
 }
 
-/// Returns a bench and two faults. The bench records the environment's light that arrives at the
+/// A bench and two faults. The bench records the environment's light that arrives at the
 /// sphere, times the cosine. In both faults, the environment is rotated by a pixel.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
@@ -254,7 +254,7 @@ fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     (Bench::of(scene, sound), turned)
 }
 
-/// Returns the table row for a fault, which names where the fault is planted.
+/// The table row for a fault, which names where the fault is planted.
 fn row(
     [name, place]: [&str; 2],
     bench: &Bench,

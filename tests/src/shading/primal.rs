@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// of the interval up to rounding.
 const LAST: f64 = 3.1;
 
-/// Returns nodes and weights of the double exponential rule between two ends (Takahasi and Mori
+/// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori
 /// 1974). The rule is accurate for functions with kinks or roots at the ends.
 pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
     let step = LAST / f64::from(count);
@@ -23,7 +23,7 @@ pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Returns nodes and weights of the trapezoid rule over the interval centre ± reach. The rule is
+/// Nodes and weights of the trapezoid rule over the interval centre ± reach. The rule is
 /// accurate for functions that vanish at the ends.
 pub(super) fn about(middle: f64, reach: f64, count: i32) -> impl Iterator<Item = (f64, f64)> {
     let step = reach / f64::from(count);
@@ -35,7 +35,7 @@ pub(super) fn wave(cycles: f64) -> Complex {
     Complex::from_polar(1.0, -TAU * cycles)
 }
 
-/// Returns ∫ f(t) e^(−2πiΩt) dt as a sum over nodes.
+/// ∫ f(t) e^(−2πiΩt) dt as a sum over nodes.
 pub(super) fn transform(
     nodes: impl IntoIterator<Item = (f64, f64)>,
     omega: f64,
@@ -45,7 +45,7 @@ pub(super) fn transform(
     terms.map(|(t, w)| wave(omega * t) * (w * f(t))).sum()
 }
 
-/// Returns ∫ f(t) dt as a sum over nodes.
+/// ∫ f(t) dt as a sum over nodes.
 pub(super) fn integral(nodes: impl IntoIterator<Item = (f64, f64)>, f: impl Fn(f64) -> f64) -> f64 {
     nodes.into_iter().map(|(t, w)| w * f(t)).sum()
 }

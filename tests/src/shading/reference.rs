@@ -50,7 +50,7 @@ fn samples(value: &Value) -> &[Value] {
     value.as_array().expect("a list")
 }
 
-/// Returns the largest deviation relative to the largest expected value; requires at least `count`
+/// The largest deviation relative to the largest expected value; requires at least `count`
 /// samples.
 fn deviation(count: usize, pairs: impl IntoIterator<Item = (Complex, Complex)>) -> f64 {
     let pairs: Vec<_> = pairs.into_iter().collect();
@@ -84,7 +84,7 @@ impl ReferenceReflection {
         number(&self.block["params"][name])
     }
 
-    /// Returns the reflection with a given factor of the incident direction and a given lobe.
+    /// The reflection with a given factor of the incident direction and a given lobe.
     fn chain<'a>(&self, before: Factor<'a>, lobe: Option<f64>) -> PlanarReflection<'a> {
         let lobe = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         PlanarReflection {
@@ -98,7 +98,7 @@ impl ReferenceReflection {
         }
     }
 
-    /// Returns the spectrum after a step of a chain.
+    /// The spectrum after a step of a chain.
     fn spectrum(
         &self,
         chain: &PlanarReflection<'_>,

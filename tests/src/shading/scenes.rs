@@ -8,14 +8,14 @@ const SCENES: &str = "fig10 textured_glossy fresnel_grazing checkerboard environ
     twisted_glossy ggx_sphere weighted sum factor_incoming factor_outgoing fresnel_aluminium \
     fresnel_diamond semi_convolution";
 
-/// Returns every scene that scatters light. If `photons` is `None`, each scene has the number of
+/// Every scene that scatters light. If `photons` is `None`, each scene has the number of
 /// photons in its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let scene = |name| changed(name, photons, &[]);
     SCENES.split(' ').map(scene).collect()
 }
 
-/// Returns a scene of the repository after the given replacements of text in its file.
+/// A scene of the repository after the given replacements of text in its file.
 ///
 /// # Panics
 /// Panics if there is no such scene, if its file does not contain one of the texts, or if the
@@ -28,7 +28,7 @@ pub(super) fn changed(name: &str, photons: Option<u64>, edits: &[(&str, &str)]) 
     sound(name, file)
 }
 
-/// Returns a scene reduced to one of its planes, so that all photons are aimed at the window of
+/// A scene reduced to one of its planes, so that all photons are aimed at the window of
 /// this plane.
 ///
 /// # Panics

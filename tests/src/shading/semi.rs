@@ -78,7 +78,7 @@ impl Sides {
         }
     }
 
-    /// Returns two numbers relative to ‖after‖: ‖operator(before) − after‖ without the contribution
+    /// Two numbers relative to ‖after‖: ‖operator(before) − after‖ without the contribution
     /// of noise, and the noise. Both norms are over the slice along x and over all frequencies that
     /// the operator's shifts keep within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
@@ -107,7 +107,7 @@ impl Sides {
     }
 }
 
-/// Returns the index of a frequency on an axis, or `None` beyond its ends.
+/// The index of a frequency on an axis, or `None` beyond its ends.
 fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
     let values = axis.values();
     values
@@ -115,7 +115,7 @@ fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
         .position(|v| (v - value).abs() < 0.01 * axis.spacing)
 }
 
-/// Returns the largest spatial frequency of the BRDFs' weights, in cycles per metre.
+/// The largest spatial frequency of the BRDFs' weights, in cycles per metre.
 fn shift(reflectance: &Reflectance) -> f64 {
     let patterns = reflectance.terms.iter().filter_map(|t| t.weight.pattern());
     patterns.fold(0.0, |most, pattern| match pattern {
@@ -124,14 +124,14 @@ fn shift(reflectance: &Reflectance) -> f64 {
     })
 }
 
-/// Returns the axes X and Y of the smooth surface, in the coordinates of the planes.
+/// The axes X and Y of the smooth surface, in the coordinates of the planes.
 fn axes(scene: &Scene) -> [[f64; 2]; 2] {
     let plane = scene.path.frame.decompose(&scene.planes[1].frame);
     let patch = &scene.patches[0].patch.frame;
     [patch.x, patch.y].map(|axis| [plane.x.dot(axis), plane.y.dot(axis)])
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     let mut scene = changed(SCENE, photons, &[]);
     let [photons, rays] = [Sides::measured(&scene), Sides::of_rays(&scene)];

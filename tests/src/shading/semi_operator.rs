@@ -4,7 +4,7 @@ use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
 use etendue_theory::shading::cosine_power_hat;
 use std::f64::consts::TAU;
 
-/// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface, in the frames
+/// The spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface, in the frames
 /// of its local normals. `before` is the spectrum of the differential irradiance, rotated about
 /// the normals. For each BRDF, `before` is multiplied by the transform of the BRDF's lobe over
 /// (Ωθ, Ωφ), and the product is convolved over (Ωx, Ωy) with the transform of the BRDF's weight
@@ -66,7 +66,7 @@ fn waves(weight: &Weight) -> Option<Vec<WeightWave>> {
     }
 }
 
-/// Returns the waves of a cosine pattern, ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
+/// The waves of a cosine pattern, ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
 fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     let Pattern::Cosine(grating) = pattern else {
         return None;
@@ -88,7 +88,7 @@ fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     Some(vec![mean, side(1.0), side(-1.0)])
 }
 
-/// Returns the transform of the Phong lobe albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from
+/// The transform of the Phong lobe albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from
 /// the mirror direction.
 fn lobe_hat(brdf: &Brdf, [theta, phi]: [f64; 2]) -> Option<Complex> {
     let is_plain =

@@ -47,7 +47,7 @@ fn discontinuity(n: i32) -> Statement {
     }
 }
 
-/// Returns the reflection that the other sections use, with the given curvature and with the
+/// The reflection that the other sections use, with the given curvature and with the
 /// given factor in place of the cosine.
 fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
     PlanarReflection {
@@ -56,7 +56,7 @@ fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'stat
     }
 }
 
-/// Returns the root mean square of Ωθ, weighted by a power spectrum.
+/// The root mean square of Ωθ, weighted by a power spectrum.
 fn spread(power: impl Fn(f64) -> f64) -> f64 {
     let [mut all, mut square] = [0.0; 2];
     for (omega, w) in about(0.0, 8.0, 80) {

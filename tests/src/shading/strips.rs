@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 /// Transparent intervals, each given as [from, to].
 pub(crate) type Strips = Vec<[f64; 2]>;
 
-/// Returns three strips between 0 and 1 for a mask of a pair, where `offset` distinguishes the
+/// Three strips between 0 and 1 for a mask of a pair, where `offset` distinguishes the
 /// second mask from the first. The edges of the strips are pseudo-random but reproducible
 /// (additive recurrences, Weyl).
 pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
@@ -18,14 +18,14 @@ pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
 }
 
-/// Returns the strips that are transparent in both of two masks in one plane.
+/// The strips that are transparent in both of two masks in one plane.
 pub(crate) fn in_common(a: &Strips, b: &Strips) -> Strips {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let both = pairs.map(|(p, q)| [p[0].max(q[0]), p[1].min(q[1])]);
     both.filter(|[low, high]| high > low).collect()
 }
 
-/// Returns the Fourier coefficients of a mask for indices from −N to N.
+/// The Fourier coefficients of a mask for indices from −N to N.
 pub(crate) fn coefficients(open: &Strips, most: usize) -> Vec<Complex> {
     (0..=2 * most)
         .map(|i| {

@@ -10,13 +10,13 @@ pub(super) fn scaled(mut crossing: Crossing, factor: f64) -> Crossing {
     crossing
 }
 
-/// Returns the cosine of the angle of incidence.
+/// The cosine of the angle of incidence.
 pub(super) fn cosine(scene: &Scene, crossing: &Crossing) -> f64 {
     let [_, from] = on_flat(scene, crossing);
     from.z
 }
 
-/// Returns the reflectances of glass of index 1.5 for the polarisations s and p, divided by their
+/// The reflectances of glass of index 1.5 for the polarisations s and p, divided by their
 /// mean (Fresnel's equations with Snell's law).
 pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     const INDEX: f64 = 1.5;

@@ -60,7 +60,7 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     ]
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn traced() -> ReportSection {
     // The deviation of a lobe is relative to the size of the neighbourhood.
     let circle = |theta0: f64, k, lobe| Circle {
@@ -156,7 +156,7 @@ const fn line(step: ReflectionStep) -> Line {
 }
 
 impl Circle {
-    /// Returns the known order at which the error of a step decreases with the neighbourhood's
+    /// The known order at which the error of a step decreases with the neighbourhood's
     /// size, or `None` if the step is exact.
     fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
@@ -175,7 +175,7 @@ impl Circle {
         }
     }
 
-    /// Returns ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
+    /// ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
     fn error(&self, step: ReflectionStep, size: f64, plant: &ChainChange) -> f64 {
         let bell = Self::light(size);
         let lobe = self.lobe.map(|lobe| lobe * size);
@@ -206,7 +206,7 @@ impl Circle {
         apart(&said, &shrunk.rays(step, &[bell], reach, &omegas))
     }
 
-    /// Returns the affine map composed of a mirror's steps, which locates the frequencies where
+    /// The affine map composed of a mirror's steps, which locates the frequencies where
     /// the spectrum is not negligible.
     fn map(&self, step: ReflectionStep) -> AffineMap<2> {
         let mut map = AffineMap::identity();
@@ -226,7 +226,7 @@ impl Circle {
         map
     }
 
-    /// Returns the transforms of the traced field, by the trapezoid rule over positions of hits
+    /// The transforms of the traced field, by the trapezoid rule over positions of hits
     /// and over angles, which end at `reach`.
     pub(super) fn rays(
         &self,
@@ -290,7 +290,7 @@ impl Circle {
         sums
     }
 
-    /// Returns the coordinates of light that leaves at arc length s in a local direction, and the
+    /// The coordinates of light that leaves at arc length s in a local direction, and the
     /// ratio of their area element to ds dθ.
     fn leaves(&self, step: ReflectionStep, s: f64, local: f64) -> ([f64; 2], f64) {
         let turn = self.k * s;
@@ -307,7 +307,7 @@ impl Circle {
         }
     }
 
-    /// Returns the position at which a line crosses the axis X = cos T − sin N through the origin.
+    /// The position at which a line crosses the axis X = cos T − sin N through the origin.
     /// The line runs through the given point, at the angle θ to the central direction, which is
     /// perpendicular to X.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {

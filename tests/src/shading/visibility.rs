@@ -111,7 +111,7 @@ fn frequencies() -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// Returns the transform in (x, u) of the windowed light of a strip that passes the mask within
+/// The transform in (x, u) of the windowed light of a strip that passes the mask within
 /// the interval `passed`.
 fn section(light: f64, passed: [f64; 2], [along_x, along_u]: [f64; 2]) -> Complex {
     let [half, steepest] = WINDOW;

@@ -15,7 +15,7 @@ pub(super) struct Statement {
     pub(super) holds: &'static str,
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn words() -> ReportSection {
     let all = blockers::statements()
         .into_iter()

@@ -36,7 +36,7 @@ impl<'a> MirrorBench<'a> {
         Steps::sound(self.distance, self.theta0, self.shape)
     }
 
-    /// Returns the largest difference between the chain composed of the steps and the chain that
+    /// The largest difference between the chain composed of the steps and the chain that
     /// theory derives from the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
         let Some(read) = rays::chain(&self.outcome.system(plane), Edition::Corrected) else {

@@ -115,7 +115,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// Returns one table row for each single misprint. All misprints are tested on a hollow sphere.
+/// One table row for each single misprint. All misprints are tested on a hollow sphere.
 /// Misprints that concern plane mirrors are also tested on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
@@ -164,7 +164,7 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
     rows
 }
 
-/// Returns the section on the misprints, tested on the hollow mirror and on the plane mirror.
+/// The section on the misprints, tested on the hollow mirror and on the plane mirror.
 pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     ReportSection::new(
         "Errata: each misprint alone",
@@ -181,7 +181,7 @@ pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     )
 }
 
-/// Returns the section on scene files that request the printed formulas. Such scenes must disagree,
+/// The section on scene files that request the printed formulas. Such scenes must disagree,
 /// as `--expect disagreement` requires.
 pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();

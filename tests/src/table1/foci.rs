@@ -20,7 +20,7 @@ const MOST: f64 = 4.0;
 /// contains the same three sums for y.
 type CrossingSums = [[f64; 3]; 2];
 
-/// Returns the section on the distances at which the beam is narrowest, in the plane of incidence
+/// The section on the distances at which the beam is narrowest, in the plane of incidence
 /// and perpendicular to this plane.
 pub(super) fn foci(outcome: &TableRun) -> ReportSection {
     let theta0: f64 = 0.7;
@@ -114,7 +114,7 @@ fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     (0..scene.run.batches).into_par_iter().map(batch).collect()
 }
 
-/// Returns the variances of crossings along x and y at each plane, over all batches or over all
+/// The variances of crossings along x and y at each plane, over all batches or over all
 /// batches but one.
 fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
@@ -135,7 +135,7 @@ fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]>
     (0..planes).map(variance).collect()
 }
 
-/// Returns the foci predicted by rays.
+/// The foci predicted by rays.
 ///
 /// # Panics
 /// Panics if no light arrives.
@@ -157,7 +157,7 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     narrowest(&variances, distances)
 }
 
-/// Returns the minima of parabolas fitted to variances.
+/// The minima of parabolas fitted to variances.
 fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     [0, 1].map(|axis: usize| {
         let values: Vec<f64> = variances.iter().map(|v| v[axis]).collect();
@@ -165,7 +165,7 @@ fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     })
 }
 
-/// Returns the vertex of the least-squares parabola.
+/// The vertex of the least-squares parabola.
 fn vertex(x: &[f64], y: &[f64]) -> f64 {
     let count = x.len() as f64;
     let mean = x.iter().sum::<f64>() / count;

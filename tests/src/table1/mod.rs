@@ -41,7 +41,7 @@ struct TableRun {
 }
 
 impl TableRun {
-    /// Returns the specular system before a plane.
+    /// The specular system before a plane.
     ///
     /// # Panics
     /// Panics if theory does not trace rays to the plane.
@@ -49,7 +49,7 @@ impl TableRun {
         path(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
 
-    /// Returns the index of a plane.
+    /// The index of a plane.
     ///
     /// # Panics
     /// Panics if there is no plane of that name.
@@ -60,7 +60,7 @@ impl TableRun {
     }
 }
 
-/// Returns all sections on Table 1. Each scene is traced with `photons` photons. If `photons` is
+/// All sections on Table 1. Each scene is traced with `photons` photons. If `photons` is
 /// `None`, each scene is traced with the number of photons in its file.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let scene = |name| named(&format!("table1/{name}"), photons, None);

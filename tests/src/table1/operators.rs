@@ -12,7 +12,7 @@ use etendue_theory::geometry::Media;
 use etendue_theory::path::PathSurface;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Returns the section on Table 1 in 4D.
+/// The section on Table 1 in 4D.
 pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
@@ -78,7 +78,7 @@ fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(line)
 }
 
-/// Returns the name of the last step before a plane, and the row of the paper's Table 1 that
+/// The name of the last step before a plane, and the row of the paper's Table 1 that
 /// describes this step.
 fn operator(view: &Observed) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
@@ -109,7 +109,7 @@ fn operator(view: &Observed) -> (&'static str, Option<Line>) {
     }
 }
 
-/// Returns the 2D section, in the plane of incidence, of a scene with one surface; a principal
+/// The 2D section, in the plane of incidence, of a scene with one surface; a principal
 /// axis of this surface must lie in that plane.
 fn section(view: &Observed) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;

@@ -35,7 +35,7 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the map composed of all operators up to a stage of the path.
+    /// The map composed of all operators up to a stage of the path.
     pub(super) fn map(&self, stage: PathStage) -> AffineMap<2> {
         let theta1 = self.theta1();
         let event = match &self.media {
@@ -120,7 +120,7 @@ impl MirrorPath {
     }
 }
 
-/// Returns the point near the origin where a line meets the circle of curvature k that touches the
+/// The point near the origin where a line meets the circle of curvature k that touches the
 /// axis T at the origin.
 pub(crate) fn on_circle(k: f64, point: DVec2, along: DVec2) -> DVec2 {
     // k (s² + h²) + 2 h = 0, for the point (s, h).
@@ -130,7 +130,7 @@ pub(crate) fn on_circle(k: f64, point: DVec2, along: DVec2) -> DVec2 {
     point + t * along
 }
 
-/// Returns the unit vector sin θ T + cos θ N.
+/// The unit vector sin θ T + cos θ N.
 fn omega(theta: f64) -> DVec2 {
     DVec2::new(theta.sin(), theta.cos())
 }

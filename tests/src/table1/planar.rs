@@ -55,7 +55,7 @@ fn paths() -> Vec<(&'static str, MirrorPath)> {
     ]
 }
 
-/// Returns the section on Table 1 in 2D.
+/// The section on Table 1 in 2D.
 pub(super) fn planar() -> ReportSection {
     let mut rows = Vec::new();
     for (name, path) in paths() {
@@ -145,7 +145,7 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the order of the error, which is known in advance. The order is 1 at oblique
+    /// The order of the error, which is known in advance. The order is 1 at oblique
     /// incidence. It is 2 at normal incidence, and also if the only approximation is that angles
     /// replace tangents.
     fn known(&self, stage: PathStage) -> f64 {
@@ -158,7 +158,7 @@ impl MirrorPath {
         }
     }
 
-    /// Returns the spectrum that the operators give for a field of this size, the frequencies, and
+    /// The spectrum that the operators give for a field of this size, the frequencies, and
     /// the covariance of the field.
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
@@ -176,7 +176,7 @@ impl MirrorPath {
     }
 }
 
-/// Returns the spectrum of exp(−½ zᵀ S⁻¹ z): 2π √det S exp(−2π² Ωᵀ S Ω).
+/// The spectrum of exp(−½ zᵀ S⁻¹ z): 2π √det S exp(−2π² Ωᵀ S Ω).
 fn gaussian_spectrum([[a, b], [_, d]]: &Matrix<2>, [x, theta]: [f64; 2]) -> f64 {
     let form = a * x * x + 2.0 * b * x * theta + d * theta * theta;
     TAU * (a * d - b * b).sqrt() * (-0.5 * TAU * TAU * form).exp()

@@ -83,7 +83,7 @@ fn swapped(bench: &MirrorBench<'_>, sign: f64) -> AffineMap<4> {
     map
 }
 
-/// Returns the section on faults of the affine maps, which are judged by the rule for first-order
+/// The section on faults of the affine maps, which are judged by the rule for first-order
 /// chains.
 pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSection {
     let mut rows = Vec::new();
@@ -177,7 +177,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
     ]
 }
 
-/// Returns the section on wrong numbers in the exact prediction, which the p-value must reject.
+/// The section on wrong numbers in the exact prediction, which the p-value must reject.
 pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {

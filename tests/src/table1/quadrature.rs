@@ -87,7 +87,7 @@ pub(crate) fn apart(a: &[Complex], b: &[Complex]) -> f64 {
     (off / b.iter().map(|b| b.norm_sqr()).sum::<f64>()).sqrt()
 }
 
-/// Returns A⁻ᵀ Ω, the frequency to which a map moves spectral power at Ω.
+/// A⁻ᵀ Ω, the frequency to which a map moves spectral power at Ω.
 pub(crate) fn content(map: &AffineMap<2>, [x, theta]: [f64; 2]) -> Option<[f64; 2]> {
     let [a, b] = map.inverse()?.spectrum_map().matrix;
     Some([a, b].map(|row| row[0] * x + row[1] * theta))

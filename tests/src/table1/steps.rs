@@ -17,7 +17,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Returns the steps that follow from ray geometry.
+    /// The steps that follow from ray geometry.
     pub(super) fn sound(distance: f64, theta0: f64, shape: Matrix<2>) -> Self {
         Self {
             distance,
@@ -29,7 +29,7 @@ impl Steps {
         }
     }
 
-    /// Returns the chain up to a plane.
+    /// The chain up to a plane.
     pub(super) fn chain(&self, plane: &VirtualPlane) -> SpectrumMap<4> {
         let mut map = AffineMap::travel(match plane.leg {
             0 => plane.distance,

@@ -23,7 +23,7 @@ struct VolumeRay {
     direction: DVec3,
 }
 
-/// Returns the section on phase-space volume and reversibility for every scene with surfaces.
+/// The section on phase-space volume and reversibility for every scene with surfaces.
 pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
@@ -83,7 +83,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     )
 }
 
-/// Returns the index of refraction at the light divided by the index at the plane.
+/// The index of refraction at the light divided by the index at the plane.
 fn index_ratio(system: &PathSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
@@ -96,7 +96,7 @@ fn index_ratio(system: &PathSystem) -> f64 {
     ratio
 }
 
-/// Returns the index before a surface divided by the index after it.
+/// The index before a surface divided by the index after it.
 fn crossed(element: &PathSurface, direction: DVec3) -> f64 {
     let Some(Specular::Refraction { front, back }) = element.event() else {
         return 1.0;
@@ -118,7 +118,7 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// Returns the errors of the phase-space volume, of the invariant, and of the rays traced back.
+/// The errors of the phase-space volume, of the invariant, and of the rays traced back.
 fn defects(system: &PathSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
@@ -184,7 +184,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// Returns the ray that starts at a point of the light's plane and has the given direction cosines.
+/// The ray that starts at a point of the light's plane and has the given direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),
@@ -217,7 +217,7 @@ fn follow(element: &PathSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     })
 }
 
-/// Returns the point where the line of a ray crosses a plane, and the direction cosines of the ray.
+/// The point where the line of a ray crosses a plane, and the direction cosines of the ray.
 fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),

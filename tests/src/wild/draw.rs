@@ -70,7 +70,7 @@ impl SceneDraw {
         Frame::new(origin, d, x).unwrap_or(Frame::IDENTITY)
     }
 
-    /// Returns a random direction, uniformly distributed over the sphere.
+    /// A random direction, uniformly distributed over the sphere.
     pub(super) fn direction(&mut self) -> DVec3 {
         let z = self.between(-1.0, 1.0);
         let (sin, cos) = self.between(0.0, TAU).sin_cos();
@@ -87,7 +87,7 @@ impl SceneDraw {
         self.rarity > 0 && self.dice.one_in(self.rarity)
     }
 
-    /// Returns one of the given extreme values, or a usual value.
+    /// One of the given extreme values, or a usual value.
     pub(super) fn extreme_or<T: Copy>(
         &mut self,
         extremes: &[T],
@@ -116,27 +116,27 @@ impl SceneDraw {
         self.dice.between(low, high)
     }
 
-    /// Returns a random integer from `low` to `high`, both included.
+    /// A random integer from `low` to `high`, both included.
     pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
         let more = self.below((high - low + 1) as usize);
         low + u32::try_from(more).unwrap_or(0)
     }
 
-    /// Returns a positive number, with a uniformly distributed logarithm, from the range `usual`
+    /// A positive number, with a uniformly distributed logarithm, from the range `usual`
     /// or, as an extreme value, from the legal range.
     pub(super) fn value(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = if self.is_extreme() { legal } else { usual };
         rounded(self.between(low.ln(), high.ln()).exp()).clamp(low, high)
     }
 
-    /// Returns a length that is drawn as [`Self::value`] draws numbers, and multiplied by the
+    /// A length that is drawn as [`Self::value`] draws numbers, and multiplied by the
     /// unit of the scene.
     pub(super) fn length(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = LENGTHS;
         (self.unit * self.value(usual, legal)).clamp(low, high)
     }
 
-    /// Returns the given number with a random sign.
+    /// The given number with a random sign.
     pub(super) fn signed(&mut self, x: f64) -> f64 {
         if self.one_in(2) { -x } else { x }
     }

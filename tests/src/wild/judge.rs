@@ -70,7 +70,7 @@ pub(super) struct JudgedScene {
 /// rays in each batch.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// Returns three seeds: the seed in the scene file, for the first run, and the seeds for two more
+/// Three seeds: the seed in the scene file, for the first run, and the seeds for two more
 /// runs.
 fn seeds(file: &SceneFile) -> [u64; 3] {
     [0, 1, 2].map(|i| file.run.seed + i)
@@ -106,7 +106,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     Ok(judged)
 }
 
-/// Returns the fault that a run without a result shows.
+/// The fault that a run without a result shows.
 fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
         RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),
@@ -254,7 +254,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Returns whether a reduced scene still has the same fault, with more than one seed.
+/// Whether a reduced scene still has the same fault, with more than one seed.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

@@ -8,7 +8,7 @@ use etendue_scene::{
 use glam::DVec3;
 use std::io;
 
-/// Returns a light at the origin of the scene's frame.
+/// A light at the origin of the scene's frame.
 pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
     let center = draw.place(DVec3::ZERO);
     let strength = draw.extreme_or(&[1e-9, 1e-3, 1e3, 1e9], |_| 1.0);
@@ -69,12 +69,12 @@ fn image(draw: &mut SceneDraw, unit: f64) -> ImageFile {
     ImageFile { width, grating }
 }
 
-/// Returns a random axis, X or Y.
+/// A random axis, X or Y.
 pub(super) fn axis(draw: &mut SceneDraw) -> AxisName {
     *draw.pick(&[AxisName::X, AxisName::Y])
 }
 
-/// Returns a random modulation between 0 and 1.
+/// A random modulation between 0 and 1.
 pub(super) fn modulation(draw: &mut SceneDraw) -> f64 {
     draw.extreme_or(&[0.0, 1.0], |draw| draw.between(0.3, 1.0))
 }

@@ -17,7 +17,7 @@ const WIDER: f64 = 2.0;
 /// Maximum number of attempts to find a scene, and to place an object.
 const TRIES: u64 = 16;
 
-/// Returns the scene with this index for this seed, mostly with several lights, with one plane at
+/// The scene with this index for this seed, mostly with several lights, with one plane at
 /// a distance on the path, and in half of the scenes with an object anywhere in the light. Returns
 /// `None` if no scene was found.
 pub(crate) fn plain_scene(seed: u64, index: u64, photons: u64, folder: &Path) -> Option<SceneFile> {

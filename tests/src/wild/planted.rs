@@ -68,7 +68,7 @@ fn tilt(system: &mut PathSystem, angle: f64) {
     };
 }
 
-/// Returns the section.
+/// The section.
 pub(super) fn planted() -> ReportSection {
     let scene = named(SCENE, Some(PHOTONS), None);
     let number = scene.planes.iter().position(|plane| plane.name == PLANE);
@@ -107,7 +107,7 @@ pub(super) fn planted() -> ReportSection {
     )
 }
 
-/// Returns the p-value for the slices predicted for `view`. All other fields of the prediction are
+/// The p-value for the slices predicted for `view`. All other fields of the prediction are
 /// taken from `like`.
 fn p_value(scene: &Scene, measured: &Measurement, view: &Observed, like: &Prediction) -> f64 {
     let plane = &scene.planes[0];

@@ -86,7 +86,7 @@ impl PlaneSummary {
     }
 }
 
-/// Returns a scene file as its text.
+/// A scene file as its text.
 pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
     let pretty = PrettyConfig::new().depth_limit(3);
     ron::Options::default()
@@ -123,7 +123,7 @@ impl Runner {
     }
 }
 
-/// Returns the outcome of a run without a result.
+/// The outcome of a run without a result.
 fn early(ended: &Ended) -> Option<RunEnding> {
     let stderr = String::from_utf8_lossy(&ended.stderr);
     if ended.hung {

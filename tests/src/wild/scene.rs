@@ -16,7 +16,7 @@ use std::path::Path;
 /// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// Returns the scene with this index for this seed. The pictures and meshes of the scene are
+/// The scene with this index for this seed. The pictures and meshes of the scene are
 /// written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
@@ -44,7 +44,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     Ok(file)
 }
 
-/// Returns a scene file with a light, and with a plane at this light.
+/// A scene file with a light, and with a plane at this light.
 fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     let light = light::light(draw)?;
     let window = window(draw);
@@ -131,7 +131,7 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// Returns the leg on which the next surface is placed. After a specular surface the next leg
+/// The leg on which the next surface is placed. After a specular surface the next leg
 /// follows the central ray; after any other surface, the next leg may have any direction in front
 /// of the surface.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
@@ -159,7 +159,7 @@ fn is_specular(surface: &SurfaceFile) -> bool {
     event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. }))
 }
 
-/// Returns the central ray of a valid scene.
+/// The central ray of a valid scene.
 fn central_ray(file: &SceneFile, folder: &Path) -> Option<CentralRay> {
     let scene = resolve("wild", file.clone(), folder, u64::MAX).ok()?;
     Some(scene.path)

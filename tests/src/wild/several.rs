@@ -56,7 +56,7 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried))
 }
 
-/// Returns a scene whose central ray visits two or more surfaces, with one plane and usually an
+/// A scene whose central ray visits two or more surfaces, with one plane and usually an
 /// occluder.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     const TRIES: u64 = 40;
@@ -90,7 +90,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     None
 }
 
-/// Returns the number of scattering surfaces before the plane.
+/// The number of scattering surfaces before the plane.
 fn scatterers(scene: &Scene) -> usize {
     let legs = scene.path.legs[..=scene.planes[0].leg].iter();
     let hits = legs.filter_map(|leg| leg.leaves);

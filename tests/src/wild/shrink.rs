@@ -28,7 +28,7 @@ const PLAIN: [(&str, &str); 6] = [
     ("form", "Plane"),
 ];
 
-/// Returns the smallest scene with the same fault that is found in the given time.
+/// The smallest scene with the same fault that is found in the given time.
 pub(super) fn shrink(
     runner: &Runner,
     file: &SceneFile,
@@ -60,7 +60,7 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// Returns all scenes that are one reduction step smaller. Scenes from which the most was removed
+/// All scenes that are one reduction step smaller. Scenes from which the most was removed
 /// come first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
@@ -97,7 +97,7 @@ fn candidates(tree: &Value) -> Vec<Value> {
     found
 }
 
-/// Returns the scenes without a blend and without the second BRDF that this blend needs.
+/// The scenes without a blend and without the second BRDF that this blend needs.
 fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     let blends = places
         .iter()
@@ -145,7 +145,7 @@ fn short(x: f64, digits: usize) -> f64 {
     format!("{x:.digits$e}").parse().unwrap_or(x)
 }
 
-/// Returns the number of characters of a number when written; 0 counts as the shortest number,
+/// The number of characters of a number when written; 0 counts as the shortest number,
 /// and 1 as the second shortest.
 fn digits(x: f64) -> usize {
     match format!("{:e}", x.abs()).as_str() {
@@ -155,7 +155,7 @@ fn digits(x: f64) -> usize {
     }
 }
 
-/// Returns every value of a tree, with its path.
+/// Every value of a tree, with its path.
 fn places(tree: &Value, at: String) -> Vec<(String, &Value)> {
     let mut found = vec![(at.clone(), tree)];
     match tree {

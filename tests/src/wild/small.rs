@@ -84,7 +84,7 @@ pub(super) enum SmallEnding {
 pub(super) struct SmallEndings(pub(super) Vec<(u64, SmallEnding)>);
 
 impl SmallEndings {
-    /// Returns the number of scenes with such an outcome, as text.
+    /// The number of scenes with such an outcome, as text.
     pub(super) fn count(&self, is: impl Fn(SmallEnding) -> bool) -> String {
         self.0
             .iter()
@@ -93,17 +93,17 @@ impl SmallEndings {
             .to_string()
     }
 
-    /// Returns the numbers of predictions of a class that were compared.
+    /// The numbers of predictions of a class that were compared.
     pub(super) fn class(&self, wanted: Class) -> String {
         self.count(|ending| matches!(ending, SmallEnding::Judged(class, _) if class == wanted))
     }
 
-    /// Returns the number of predictions with a verdict.
+    /// The number of predictions with a verdict.
     pub(super) fn judged(&self, wanted: Verdict) -> String {
         self.count(|ending| matches!(ending, SmallEnding::Judged(_, verdict) if verdict == wanted))
     }
 
-    /// Returns the numbers of the scenes whose predictions photons reject.
+    /// The numbers of the scenes whose predictions photons reject.
     pub(super) fn rejected(&self) -> Vec<String> {
         let fails = |ending: &SmallEnding| matches!(ending, SmallEnding::Judged(_, Verdict::Fail));
         let failing = self.0.iter().filter(|(_, ending)| fails(ending));
@@ -141,7 +141,7 @@ pub(super) fn tried<T: Send>(
     Ok(tried?.into_iter().flatten().collect())
 }
 
-/// Returns the outcome for a scene, and saves the scene if photons reject its prediction.
+/// The outcome for a scene, and saves the scene if photons reject its prediction.
 pub(super) fn kept_ending(
     options: &SmallOptions,
     number: u64,
@@ -165,7 +165,7 @@ fn keep(options: &SmallOptions, number: u64, scene: &Scene, from: &Path) -> io::
     fs::write(folder.join("scene.ron"), text(&scene.file)?)
 }
 
-/// Returns a scene with one plane and a small object of one of [`KINDS`] in its light.
+/// A scene with one plane and a small object of one of [`KINDS`] in its light.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, usize)> {
     let mut draw = SceneDraw::new(options.seed ^ 0x5311, number, folder);
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
@@ -230,7 +230,7 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// Returns a random coordinate in the window, relative to the half-width of the window. The
+/// A random coordinate in the window, relative to the half-width of the window. The
 /// coordinate is anywhere in the window or near its edge.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
@@ -307,13 +307,13 @@ pub(super) fn object(
     kind
 }
 
-/// Returns the direction from which light comes to the plane.
+/// The direction from which light comes to the plane.
 fn towards_light(scene: &Scene) -> DVec3 {
     let plane = &scene.planes[0];
     -scene.path.frame.decompose(&plane.frame).d
 }
 
-/// Returns the outcome for the only plane: whether a theory applies, and the verdict of photons on
+/// The outcome for the only plane: whether a theory applies, and the verdict of photons on
 /// its prediction.
 fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     let plane = &scene.planes[0];

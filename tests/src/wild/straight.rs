@@ -15,7 +15,7 @@ const DIRECTIONS: [&str; 7] = [
     "front",
 ];
 
-/// Returns the scene in the frame at its light, or `None` if the scene is already in this frame.
+/// The scene in the frame at its light, or `None` if the scene is already in this frame.
 ///
 /// Meshes are not rotated, so a run must show whether a rotated scene with meshes still has the
 /// fault.

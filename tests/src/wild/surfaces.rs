@@ -16,7 +16,7 @@ struct Meeting<'a> {
     normal: DVec3,
 }
 
-/// Returns a surface that a leg of the path meets at the given distance along the leg.
+/// A surface that a leg of the path meets at the given distance along the leg.
 pub(super) fn surface(
     draw: &mut SceneDraw,
     name: String,
@@ -36,7 +36,7 @@ pub(super) fn surface(
     }
 }
 
-/// Returns a normal that faces the arriving light. Incidence is normal or oblique, and sometimes
+/// A normal that faces the arriving light. Incidence is normal or oblique, and sometimes
 /// grazing.
 fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
@@ -169,7 +169,7 @@ fn form(draw: &mut SceneDraw) -> FormFile {
     }
 }
 
-/// Returns a small rectangle beside the first leg: the path does not visit it, but it blocks
+/// A small rectangle beside the first leg: the path does not visit it, but it blocks
 /// light.
 pub(super) fn passed(draw: &mut SceneDraw, name: String, first: f64) -> SurfaceFile {
     let size = [(); 2].map(|()| draw.unit * draw.between(0.05, 0.3));

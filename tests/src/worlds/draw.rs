@@ -11,7 +11,7 @@ pub(super) const SIZE: [usize; 2] = [48, 32];
 const PRINCIPLED: &str = "metallic roughness anisotropic specular spec_tint flatness sheen \
     clearcoat clearcoat_gloss";
 
-/// Returns a world with all kinds of shapes, materials, textures and lights, and a pixel of its
+/// A world with all kinds of shapes, materials, textures and lights, and a pixel of its
 /// camera.
 pub(super) fn world(seed: u64, number: u64) -> (String, [usize; 2]) {
     let mut draw = WorldDraw(Dice::new(seed, number));
@@ -72,7 +72,7 @@ fn shape(kind: &str, transform: &str, inside: &str) -> String {
 struct WorldDraw(Dice);
 
 impl WorldDraw {
-    /// Returns a number from 0 to 1, often one of the two ends.
+    /// A number from 0 to 1, often one of the two ends.
     fn share(&mut self) -> String {
         match self.0.below(4) {
             0 => "0".to_owned(),
@@ -81,12 +81,12 @@ impl WorldDraw {
         }
     }
 
-    /// Returns a number whose logarithm is uniformly distributed.
+    /// A number whose logarithm is uniformly distributed.
     fn positive(&mut self, low: f64, high: f64) -> f64 {
         self.0.between(low.ln(), high.ln()).exp()
     }
 
-    /// Returns an object that stands on the floor.
+    /// An object that stands on the floor.
     fn object(&mut self) -> String {
         let kind = *self
             .0
@@ -158,7 +158,7 @@ impl WorldDraw {
         }
     }
 
-    /// Returns a reflectance, which may be a texture.
+    /// A reflectance, which may be a texture.
     fn reflectance(&mut self, name: &str) -> String {
         if !self.0.one_in(3) {
             return value(name, self.0.between(0.1, 0.9));
@@ -180,7 +180,7 @@ impl WorldDraw {
         )
     }
 
-    /// Returns a material. A material at `depth` 1 is part of another material.
+    /// A material. A material at `depth` 1 is part of another material.
     fn material(&mut self, depth: u32) -> String {
         let kinds = if depth == 0 { 13 } else { 7 };
         let both = |of: String| bsdf("twosided", &of);

@@ -35,8 +35,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
     ("meshfile", 1657, 1658, "an empty line"),
     ("mpi", 77, 77, ""),
-    ("paper", 3243, 3134, ""),
-    ("pipeline", 5436, 3034, ""),
+    ("paper", 3243, 3169, ""),
+    ("pipeline", 5436, 3046, ""),
     (
         "predict",
         2917,
@@ -60,15 +60,16 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "spectrum",
         3218,
-        3318,
-        "errors of bandwidths hold where noise is strong; noise of pictures without power",
+        3326,
+        "errors of bandwidths hold where noise is strong; noise of pictures without power; \
+         long functions say why",
     ),
     ("store", 3185, 3170, ""),
     ("studies", 4009, 4009, ""),
     (
         "theory",
         15390,
-        15626,
+        15633,
         "derivatives use the rays of the prediction for masks, and stop when accurate; surfaces have \
          positions, and so have objects beside the path",
     ),
@@ -80,14 +81,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
     ("worlds", 22_217, 21_904, ""),
-    ("tests of all kinds", 69_203, 67_710, ""),
+    ("tests of all kinds", 69_203, 67_728, ""),
 ];
 
 /// A crate may be smaller than its row says by one line in this many, so that not every change needs
 /// another row.
 const SLACK: usize = 50;
 
-/// Returns the number of lines of each crate outside its tests, and the lines of all tests.
+/// The number of lines of each crate outside its tests, and the lines of all tests.
 fn counted(files: &BTreeMap<String, String>) -> BTreeMap<String, usize> {
     let mut tests: Vec<String> = Vec::new();
     for (name, text) in files {
@@ -125,7 +126,7 @@ fn counted(files: &BTreeMap<String, String>) -> BTreeMap<String, usize> {
     counted
 }
 
-/// Returns what is wrong with the rows of a table.
+/// What is wrong with the rows of a table.
 fn wrong(table: &[(&str, usize, usize, &str)], counted: &BTreeMap<String, usize>) -> Vec<String> {
     let mut wrong = Vec::new();
     for (name, lines) in counted {

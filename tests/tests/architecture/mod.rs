@@ -95,7 +95,7 @@ fn root() -> PathBuf {
         .to_owned()
 }
 
-/// Returns the folders of all crates that the tool consists of, relative to the root.
+/// The folders of all crates that the tool consists of, relative to the root.
 fn crates() -> Vec<String> {
     let folders = ["crates", "crates/worlds"].map(|folder| {
         let entries = fs::read_dir(root().join(folder)).unwrap();
@@ -110,12 +110,12 @@ fn crates() -> Vec<String> {
     crates
 }
 
-/// Returns the name of the crate in a folder.
+/// The name of the crate in a folder.
 fn name_of(place: &str) -> &str {
     place.rsplit('/').next().unwrap_or(place)
 }
 
-/// Returns the workspace crates among the dependencies of a manifest; dependencies of tests are
+/// The workspace crates among the dependencies of a manifest; dependencies of tests are
 /// not included.
 fn uses(manifest: &str) -> BTreeSet<String> {
     let own = manifest
@@ -134,7 +134,7 @@ fn words(text: &str) -> Vec<&str> {
     text.split_whitespace().collect()
 }
 
-/// Returns the crates in `found` that the crate `name` must not use.
+/// The crates in `found` that the crate `name` must not use.
 fn forbidden(name: &str, found: &BTreeSet<String>) -> Vec<String> {
     let allowed = MAY_USE.iter().find(|(known, _)| *known == name);
     let allowed: Vec<&str> = allowed.map_or(Vec::new(), |(_, allowed)| words(allowed));
@@ -261,7 +261,7 @@ fn a_planted_circle_is_found() {
     }
 }
 
-/// Returns the files of Rust in some folders of each crate, with their text.
+/// The files of Rust in some folders of each crate, with their text.
 fn files(folders: &[&str]) -> BTreeMap<String, String> {
     fn collect(folder: &Path, found: &mut BTreeMap<String, String>) {
         for entry in fs::read_dir(folder).into_iter().flatten() {

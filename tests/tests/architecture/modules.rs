@@ -14,7 +14,7 @@ pub(crate) type Modules = BTreeMap<Module, String>;
 /// Maximum length of a chain of re-exports; a longer chain is a cycle.
 const MAX_REEXPORTS: usize = 8;
 
-/// Returns the modules below a source folder, each without comments and code compiled only for
+/// The modules below a source folder, each without comments and code compiled only for
 /// tests.
 pub(crate) fn modules(src: &Path) -> Modules {
     let mut texts = Modules::new();
@@ -54,7 +54,7 @@ fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
     }
 }
 
-/// Returns the cycles of modules that use each other, each sorted by name.
+/// The cycles of modules that use each other, each sorted by name.
 pub(crate) fn circles(modules: &Modules) -> Vec<BTreeSet<String>> {
     let names: Vec<&Module> = modules.keys().collect();
     let uses: BTreeMap<&Module, BTreeSet<Module>> = names
@@ -85,7 +85,7 @@ fn shown(module: &Module) -> String {
     }
 }
 
-/// Returns all modules reachable from a module.
+/// All modules reachable from a module.
 fn reached<'a>(
     uses: &'a BTreeMap<&'a Module, BTreeSet<Module>>,
     from: &Module,
@@ -100,7 +100,7 @@ fn reached<'a>(
     reached
 }
 
-/// Returns the other modules that a module uses. If a module is only re-exported, it does not count
+/// The other modules that a module uses. If a module is only re-exported, it does not count
 /// as used.
 fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     let text = &modules[module];
@@ -115,7 +115,7 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     resolved.filter(|found| found != module).collect()
 }
 
-/// Returns the imports in a source text, each with a flag that marks re-exports, and the text
+/// The imports in a source text, each with a flag that marks re-exports, and the text
 /// without these imports.
 fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     let mut imports = Vec::new();
@@ -135,7 +135,7 @@ fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     (imports, rest)
 }
 
-/// Returns the position of the first `use` in a source text.
+/// The position of the first `use` in a source text.
 fn find_use(text: &str) -> Option<usize> {
     let starts = text.match_indices("use ").map(|(at, _)| at);
     let is_word = |at: &usize| {
@@ -149,7 +149,7 @@ fn find_use(text: &str) -> Option<usize> {
     })
 }
 
-/// Returns the paths of an import tree, such as `a::{b, c::d as e}`. Each path ends with the local
+/// The paths of an import tree, such as `a::{b, c::d as e}`. Each path ends with the local
 /// name.
 fn expanded(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
@@ -179,7 +179,7 @@ fn expanded(tree: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns the paths, outside imports, that begin at the crate root, a parent module or a child
+/// The paths, outside imports, that begin at the crate root, a parent module or a child
 /// module.
 fn paths_of(body: &str) -> Vec<Vec<String>> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
@@ -192,7 +192,7 @@ fn paths_of(body: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Returns a path relative to the root of the crate, or `None` if the path leads to another
+/// A path relative to the root of the crate, or `None` if the path leads to another
 /// crate.
 fn absolute(modules: &Modules, module: &Module, path: &[String], depth: usize) -> Option<Module> {
     let mut base = module.clone();
@@ -219,7 +219,7 @@ fn absolute(modules: &Modules, module: &Module, path: &[String], depth: usize) -
     Some(base)
 }
 
-/// Returns the module to which a path leads through re-exports.
+/// The module to which a path leads through re-exports.
 fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
     let longest = (0..=path.len()).rev();
     let known = longest
@@ -232,7 +232,7 @@ fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
     }
 }
 
-/// Returns a path whose first name a module imports, relative to the root of the crate. Returns
+/// A path whose first name a module imports, relative to the root of the crate. Returns
 /// `None` if the module does not import it, and `Some(None)` if it comes from another crate.
 fn imported(
     modules: &Modules,

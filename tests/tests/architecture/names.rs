@@ -40,7 +40,7 @@ const SHARED_NAMES: &[(&str, &str)] = &[
 /// implementation (which is independent of the first), and the binding (which uses Python's names).
 const APART: [&str; 3] = ["/src/tests/", "tests/src/second/", "python/src/"];
 
-/// Returns the names of the types that a source text defines outside its tests.
+/// The names of the types that a source text defines outside its tests.
 fn types(text: &str) -> Vec<String> {
     let text = code(text);
     let names = text.lines().filter_map(|line| {
@@ -59,7 +59,7 @@ fn types(text: &str) -> Vec<String> {
     names.collect()
 }
 
-/// Returns the names shared by several types, with the files that define them.
+/// The names shared by several types, with the files that define them.
 fn shared<'a>(
     files: impl IntoIterator<Item = (&'a String, &'a String)>,
 ) -> BTreeMap<String, Vec<&'a str>> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Returns a text without tests, comments, and the contents of strings and characters.
+/// A text without tests, comments, and the contents of strings and characters.
 pub(crate) fn code(text: &str) -> String {
     let blanked = blanked(text);
     let tests: Vec<Range<usize>> = tests(&blanked)
@@ -15,13 +15,13 @@ pub(crate) fn code(text: &str) -> String {
     lines.map(|(_, line)| line).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the names of the modules in other files that a text declares for tests alone.
+/// The names of the modules in other files that a text declares for tests alone.
 pub(crate) fn test_modules(text: &str) -> BTreeSet<String> {
     let tests = tests(&blanked(text)).into_iter();
     tests.filter_map(|(_, module)| module).collect()
 }
 
-/// Returns the lines of each item that is compiled for tests alone, with its attributes. If the
+/// The lines of each item that is compiled for tests alone, with its attributes. If the
 /// item is a module in another file, its name comes with it.
 fn tests(blanked: &str) -> Vec<(Range<usize>, Option<String>)> {
     let lines: Vec<&str> = blanked.lines().map(str::trim).collect();
@@ -51,7 +51,7 @@ fn tests(blanked: &str) -> Vec<(Range<usize>, Option<String>)> {
     found
 }
 
-/// Returns the number of lines of the item with which the lines begin. It ends with the brace that
+/// The number of lines of the item with which the lines begin. It ends with the brace that
 /// closes its body, or with a semicolon.
 fn item(lines: &[&str]) -> usize {
     let mut depth = 0_usize;
@@ -71,7 +71,7 @@ fn item(lines: &[&str]) -> usize {
     lines.len()
 }
 
-/// Returns a text without comments, and without the contents of strings and characters. Line breaks
+/// A text without comments, and without the contents of strings and characters. Line breaks
 /// stay.
 fn blanked(text: &str) -> String {
     let mut blanked = String::new();
@@ -95,7 +95,7 @@ fn blanked(text: &str) -> String {
     blanked
 }
 
-/// Returns the length in bytes of the comment, string or character with which a text begins, if it
+/// The length in bytes of the comment, string or character with which a text begins, if it
 /// does. An `r` that ends a word begins no string.
 fn literal(text: &str, is_word: bool) -> Option<usize> {
     // The position after `end`, from byte `start` on.

@@ -23,12 +23,12 @@ use etendue_theory::path::PathSystem;
 use etendue_theory::{Model, Observed, RayBudget};
 use std::time::Instant;
 
-/// Returns a scene of `scenes/wild`, with parts of its text replaced.
+/// A scene of `scenes/wild`, with parts of its text replaced.
 fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     common::edited(&format!("wild/{name}"), edits)
 }
 
-/// Returns a scene of `scenes/wild`.
+/// A scene of `scenes/wild`.
 fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
@@ -64,7 +64,7 @@ fn by_theory(scene: &Scene, plane: &VirtualPlane) -> Prediction {
     predict(scene, plane, &Applicability::new(scene, plane))
 }
 
-/// Returns the prediction by exact rays, without the affine chain, whose verdict is separate.
+/// The prediction by exact rays, without the affine chain, whose verdict is separate.
 fn by_exact_rays(scene: &Scene, plane: usize) -> Prediction {
     Prediction {
         first_order: None,
@@ -72,7 +72,7 @@ fn by_exact_rays(scene: &Scene, plane: usize) -> Prediction {
     }
 }
 
-/// Returns the row of results/wild.md that describes a plane.
+/// The row of results/wild.md that describes a plane.
 fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport) {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     println!(
@@ -181,7 +181,7 @@ fn by_path(scene: &Scene, plane: usize, view: &Observed, like: Prediction) -> Pr
     replaced(like, found.slices, found.replicates)
 }
 
-/// Returns a prediction with its slices replaced by others.
+/// A prediction with its slices replaced by others.
 fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Prediction {
     Prediction {
         quadrature_error: None,

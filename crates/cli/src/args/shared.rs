@@ -112,7 +112,7 @@ pub(crate) struct FolderArgs {
 }
 
 impl FolderArgs {
-    /// Returns the requested folder, or `out/NAME` if no folder was requested.
+    /// The requested folder, or `out/NAME` if no folder was requested.
     pub(crate) fn or_named(&self, name: impl AsRef<Path>) -> PathBuf {
         let named = || Path::new("out").join(name);
         self.folder.clone().unwrap_or_else(named)
@@ -144,7 +144,7 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Returns the scene file and its overrides, for the pipeline.
+    /// The scene file and its overrides, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
         SceneSource {
             color: self.color,

@@ -100,7 +100,7 @@ pub(crate) enum SamplerArg {
     File(PathBuf),
 }
 
-/// Returns the files of points among the samplers.
+/// The files of points among the samplers.
 pub(crate) fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
     samplers.iter().filter_map(|sampler| match sampler {
         SamplerArg::Named(_) => None,
@@ -108,7 +108,7 @@ pub(crate) fn files(samplers: &[SamplerArg]) -> impl Iterator<Item = &PathBuf> {
     })
 }
 
-/// Returns the samplers, with the points of files.
+/// The samplers, with the points of files.
 pub(crate) fn samplers(named: &[SamplerArg]) -> Result<Vec<Sampler>, Failure> {
     let of = |sampler: &SamplerArg| match sampler {
         SamplerArg::Named(all) => Ok(all.clone()),

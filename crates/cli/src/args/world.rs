@@ -223,8 +223,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point that measure how far away the blockers are. Except by `--method paper`, the
-    /// same number of rays measures how far away the lights are [default: 100 by `--method paper`,
+    /// Rays per point that measure how far away the blockers are. As many rays measure how far
+    /// away the lights are, except with `--method paper` [default: 100 with `--method paper`,
     /// otherwise 16]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: Option<u32>,

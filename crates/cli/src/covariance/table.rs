@@ -7,7 +7,7 @@ use etendue_report::table::{aligned, below_header};
 /// The matrix entries that are shown: variances, and the covariances that arise as light travels.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 
-/// Returns a table of covariances for each plane, with remarks.
+/// A table of covariances for each plane, with remarks.
 pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
         "Covariance of the power spectrum. The units are cycles² per m², cycles² per (m × slope) and cycles² per slope²."

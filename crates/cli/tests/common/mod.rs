@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// Returns the path of a scene of this repository.
+/// The path of a scene of this repository.
 pub fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes")
@@ -27,7 +27,7 @@ pub fn etendue() -> Command {
     Command::new(env!("CARGO_BIN_EXE_etendue"))
 }
 
-/// Returns all files of a folder, by their relative names.
+/// All files of a folder, by their relative names.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -49,7 +49,7 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Returns all files of a result except for its times, which no two runs share.
+/// All files of a result except for its times, which no two runs share.
 #[track_caller]
 pub fn untimed(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = files(folder);
@@ -73,14 +73,14 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557, sampling: Net),
 )"#;
 
-/// Returns a folder with the small scene, `small.ron`.
+/// A folder with the small scene, `small.ron`.
 pub fn small() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
     folder
 }
 
-/// Returns a folder with the scene `small.ron`, its prediction `p`, and its measurement in two
+/// A folder with the scene `small.ron`, its prediction `p`, and its measurement in two
 /// parts: `a` has the batches 0..20, and `b` has 20..64.
 pub fn stages() -> TempDir {
     let folder = small();
@@ -115,7 +115,7 @@ pub fn loud(folder: &Path, arguments: &str) -> Output {
     command.output().unwrap()
 }
 
-/// Returns the output of a command that ends with an exit code.
+/// The output of a command that ends with an exit code.
 #[track_caller]
 fn ended(output: Output, arguments: &str, code: i32) -> Output {
     assert_eq!(output.status.code(), Some(code), "{arguments}: {output:?}");
@@ -162,7 +162,7 @@ pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     assert!(!folder.join("out").exists(), "{arguments}: out was written");
 }
 
-/// Returns a JSON object that ends with its own hash, as the indices of results do.
+/// A JSON object that ends with its own hash, as the indices of results do.
 pub fn sealed(mut tree: Value) -> Vec<u8> {
     tree.as_object_mut().unwrap().remove("index_hash");
     let text = tree.to_string();

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 /// The number of corners of the polygon that replaces a disc.
 const DISC_CORNERS: u32 = 1024;
 
-/// Returns the triangles of an opaque screen around a hole, at a distance from the light in metres.
+/// The triangles of an opaque screen around a hole, at a distance from the light in metres.
 /// The screen reaches beyond the square of coordinates of modulus up to `beyond`. Also returns the
 /// largest distance between the edge of the hole and the edge of the triangles, in metres; it is
 /// zero unless the hole is a disc.
@@ -28,7 +28,7 @@ pub(super) fn screen(hole: &Hole, distance: f64, beyond: f64) -> (Vec<[DVec3; 3]
     (triangles.collect(), error)
 }
 
-/// Returns the corners of a polygon that replaces a hole, and the largest distance between their
+/// The corners of a polygon that replaces a hole, and the largest distance between their
 /// edges.
 fn outline(hole: &Hole) -> (Vec<[f64; 2]>, f64) {
     match hole {

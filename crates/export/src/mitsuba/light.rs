@@ -116,7 +116,7 @@ impl Writer {
     }
 }
 
-/// Returns the error of a picture of a smooth function that is interpolated linearly between
+/// The error of a picture of a smooth function that is interpolated linearly between
 /// pixels. The error is an eighth of the second derivative times the squared pixel width.
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;

@@ -6,7 +6,7 @@ use super::{NotInMitsuba, Writer};
 use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
 
 impl Writer {
-    /// Returns the BSDF of a mirror or an interface.
+    /// The BSDF of a mirror or an interface.
     pub(super) fn specular(event: &Specular, name: &str) -> Result<String, NotInMitsuba> {
         match *event {
             Specular::Mirror => Ok(format!(
@@ -132,7 +132,7 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// Returns the index of refraction n and the index of absorption k. A dielectric becomes a metal
+/// The index of refraction n and the index of absorption k. A dielectric becomes a metal
 /// without absorption, which reflects in the same way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {

@@ -37,7 +37,7 @@ pub(super) struct MeshVertex {
     pub(super) uv: DVec2,
 }
 
-/// Returns the mesh of a patch; its texture coordinates are (s, t).
+/// The mesh of a patch; its texture coordinates are (s, t).
 pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     if patch.curvature.iter().all(|k| *k == 0.0) {
         return rings(patch, 1, EDGE);
@@ -52,7 +52,7 @@ pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     }
 }
 
-/// Returns the centre of the patch, and rings of corners around this centre.
+/// The centre of the patch, and rings of corners around this centre.
 fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     let vertex = |r: f64, turn: f64| {
         let (sin, cos) = libm::sincos(TAU * turn);
@@ -110,7 +110,7 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     }
 }
 
-/// Returns the distance between a triangle and the patch, to first order. The distance is evaluated
+/// The distance between a triangle and the patch, to first order. The distance is evaluated
 /// at the centre of the triangle and at the midpoints of its sides.
 fn off(patch: &Patch, [a, b, c]: [DVec3; 3]) -> f64 {
     let middles = [

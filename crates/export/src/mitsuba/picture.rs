@@ -17,7 +17,7 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// Returns a picture whose pixels are values of a function at their centres. The arguments of the
+/// A picture whose pixels are values of a function at their centres. The arguments of the
 /// function are distances from the left and from the top, in pixels.
 pub(super) fn sampled(
     [width, height]: [usize; 2],

@@ -68,7 +68,7 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
     bytes
 }
 
-/// Returns the identifier of an object. Names in the scene file may contain any character,
+/// The identifier of an object. Names in the scene file may contain any character,
 /// identifiers may not.
 pub(super) fn id(object: Object) -> String {
     match object {

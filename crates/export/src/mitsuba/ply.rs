@@ -4,14 +4,14 @@ use super::patch::PatchMesh;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Returns a mesh; corners with the same coordinates become one vertex.
+/// A mesh; corners with the same coordinates become one vertex.
 pub(super) fn ply(triangles: &[[DVec3; 3]]) -> Vec<u8> {
     let corners = triangles.iter().map(|t| t.map(|p| p.to_array()));
     let (vertices, faces) = indexed(corners);
     written(&["x", "y", "z"], &vertices, &faces)
 }
 
-/// Returns a mesh with normals at the corners of its triangles; corners with the same coordinates
+/// A mesh with normals at the corners of its triangles; corners with the same coordinates
 /// and normal become one vertex.
 pub(super) fn shaded(triangles: &[[DVec3; 3]], normals: &[[DVec3; 3]]) -> Vec<u8> {
     let corners = triangles.iter().zip(normals).map(|(points, normals)| {
@@ -24,7 +24,7 @@ pub(super) fn shaded(triangles: &[[DVec3; 3]], normals: &[[DVec3; 3]]) -> Vec<u8
     written(&["x", "y", "z", "nx", "ny", "nz"], &vertices, &faces)
 }
 
-/// Returns a mesh with normals and texture coordinates.
+/// A mesh with normals and texture coordinates.
 pub(super) fn smooth(mesh: &PatchMesh) -> Vec<u8> {
     let vertices: Vec<[f64; 8]> = mesh
         .vertices
@@ -64,7 +64,7 @@ fn written<const N: usize>(
     bytes
 }
 
-/// Returns the vertices in order of first use, and the triangles as indices of vertices.
+/// The vertices in order of first use, and the triangles as indices of vertices.
 fn indexed<const N: usize>(
     triangles: impl Iterator<Item = [[f64; N]; 3]>,
 ) -> (Vec<[f64; N]>, Vec<[u32; 3]>) {

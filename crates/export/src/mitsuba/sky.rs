@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 /// (2π/4096/σ)²/8 of the peak: 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
 const AROUND: usize = 4096;
 
-/// Returns the number of pixels per row, and the radiance row by row.
+/// The number of pixels per row, and the radiance row by row.
 ///
 /// A pixel map is represented exactly, because the nodes of the new picture include all nodes of
 /// the map. The radiance of light that travels against the central ray is set to 0.
@@ -47,14 +47,14 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     (width, pixels.collect())
 }
 
-/// Returns the factor by which pixels are subdivided. This factor is odd, so the centres of old
+/// The factor by which pixels are subdivided. This factor is odd, so the centres of old
 /// pixels are also centres of new pixels.
 fn finer(width: usize) -> usize {
     let least = AROUND.div_ceil(width);
     if width >= AROUND / 2 { 1 } else { least | 1 }
 }
 
-/// Returns a direction. `around` is its azimuth as a fraction of a full turn, and `down` is 0 at
+/// A direction. `around` is its azimuth as a fraction of a full turn, and `down` is 0 at
 /// the upper pole and 1 at the lower pole.
 fn toward(around: f64, down: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(TAU * (0.5 - around));

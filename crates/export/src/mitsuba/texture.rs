@@ -26,7 +26,7 @@ impl VariedTexture<'_> {
         low + share * (high - low)
     }
 
-    /// Returns the number multiplied by a factor.
+    /// The number multiplied by a factor.
     pub(super) fn times(self, factor: f64) -> Self {
         let range = self.range.map(|value| factor * value);
         Self { range, ..self }
@@ -34,7 +34,7 @@ impl VariedTexture<'_> {
 }
 
 impl Writer {
-    /// Returns a parameter of a material.
+    /// A parameter of a material.
     ///
     /// Checkerboards are also pictures of four pixels, because Mitsuba 3.9.1 swaps the colours of
     /// a checkerboard that is used as a number.
@@ -81,7 +81,7 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// Returns a picture that is 1 in the area of another picture and 0 outside. It has nine
+    /// A picture that is 1 in the area of another picture and 0 outside. It has nine
     /// pixels, and only the middle pixel is 1.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {
@@ -114,7 +114,7 @@ impl Writer {
     }
 }
 
-/// Returns the map from (s, t) to the coordinates of a picture, as a factor and an offset for each
+/// The map from (s, t) to the coordinates of a picture, as a factor and an offset for each
 /// axis. The coordinates of a picture go from (0, 0) at its top left to (1, 1).
 fn placed(picture: &Picture) -> [[f64; 2]; 2] {
     let [width, height] = picture.size;

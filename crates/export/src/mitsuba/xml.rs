@@ -9,7 +9,7 @@ use glam::DVec3;
 pub(super) struct Xml(String);
 
 impl Xml {
-    /// Returns a file with its header. The header states where the coordinates lie in the world,
+    /// A file with its header. The header states where the coordinates lie in the world,
     /// and has the virtual planes and the integrator.
     pub(super) fn new(scene: &Scene) -> Self {
         let mut xml =
@@ -120,26 +120,26 @@ impl Xml {
     }
 }
 
-/// Returns the emission of a light on the front of its shape.
+/// The emission of a light on the front of its shape.
 pub(super) fn emitter(radiance: f64) -> String {
     let radiance = spectrum("radiance", radiance);
     format!("<emitter type=\"area\">{radiance}</emitter>")
 }
 
-/// Returns a Lambertian material that is the same on both sides. Mitsuba's diffuse material has a
+/// A Lambertian material that is the same on both sides. Mitsuba's diffuse material has a
 /// black back.
 pub(super) fn diffuse(albedo: f64) -> String {
     let albedo = spectrum("reflectance", albedo);
     format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{albedo}</bsdf></bsdf>")
 }
 
-/// Returns a black material. It is needed because Mitsuba's default material reflects half of the
+/// A black material. It is needed because Mitsuba's default material reflects half of the
 /// light.
 pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }
 
-/// Returns the texture for a picture that covers a whole light, without scaling.
+/// The texture for a picture that covers a whole light, without scaling.
 pub(super) fn picture(name: &str, file: &str) -> String {
     format!(
         "<texture type=\"bitmap\" name=\"{name}\"><string name=\"filename\" value=\"{file}\"/>\
@@ -147,7 +147,7 @@ pub(super) fn picture(name: &str, file: &str) -> String {
     )
 }
 
-/// Returns the transform that gives a shape these axes and this origin.
+/// The transform that gives a shape these axes and this origin.
 fn matrix([x, y, z, origin]: [DVec3; 4]) -> String {
     let row = |i: usize| format!("{:?} {:?} {:?} {:?}", x[i], y[i], z[i], origin[i]);
     let rows = [0, 1, 2].map(row).join(" ");

@@ -17,7 +17,7 @@ fn stored(name: &str) -> Scene {
     scene(name, &std::fs::read_to_string(path).expect("scenes/"))
 }
 
-/// Returns a scene with the given light and blockers, above a floor of 1/3 by 0.1 m.
+/// A scene with the given light and blockers, above a floor of 1/3 by 0.1 m.
 fn of(light: &str, blockers: &str) -> Scene {
     let text = format!(
         r#"(
@@ -55,7 +55,7 @@ fn of_type<'a>(xml: &'a Document<'a>, kind: &str) -> Vec<Node<'a, 'a>> {
         .collect()
 }
 
-/// Returns the numbers in the attributes of the first descendant with this tag.
+/// The numbers in the attributes of the first descendant with this tag.
 fn numbers(node: &Node<'_, '_>, tag: &str, names: &[&str]) -> Vec<f64> {
     let mut inside = node.descendants().filter(|n| n.has_tag_name(tag));
     let element = inside.next().expect("such an element");

@@ -6,7 +6,7 @@ use roxmltree::{Document, Node};
 
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), intensity: 2, image: (width: (0.12, 0.06)))";
 
-/// Returns a scene with a given smooth surface, 0.5 m around its vertex.
+/// A scene with a given smooth surface, 0.5 m around its vertex.
 fn smooth(light: &str, form: &str, event: &str) -> Result<Export, NotInMitsuba> {
     let text = format!(
         r#"(
@@ -28,7 +28,7 @@ fn reflects(form: &str, brdf: &str) -> Export {
     smooth(PROJECTOR, form, &format!("Reflects({brdf})")).expect("words of Mitsuba")
 }
 
-/// Returns the value of a parameter.
+/// The value of a parameter.
 fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     let mut inside = node.descendants();
     let found = inside.find(|n| n.attribute("name") == Some(name));
@@ -36,7 +36,7 @@ fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     value.expect("a value").parse().expect("a number")
 }
 
-/// Returns the width and height of a picture, and its values, which begin with the lowest row.
+/// The width and height of a picture, and its values, which begin with the lowest row.
 fn picture(export: &Export, name: &str) -> ([usize; 2], Vec<f32>) {
     let bytes = file(export, name);
     let head = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n');

@@ -16,7 +16,7 @@ pub(super) struct SegmentName {
     pub(super) row: usize,
 }
 
-/// Returns positions of the planes' numbers that do not overlap. The number of a plane is below
+/// Positions of the planes' numbers that do not overlap. The number of a plane is below
 /// the plane's line, or to the side of it if other numbers are near.
 pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
     let true_places = || section.planes.iter().map(|plane| across(plane.distance));

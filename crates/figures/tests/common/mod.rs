@@ -47,7 +47,7 @@ impl Pixels {
     }
 }
 
-/// Returns the embedded images of a figure, in the order in which they are drawn.
+/// The embedded images of a figure, in the order in which they are drawn.
 pub fn images(figure: &Figure) -> Vec<Pixels> {
     let parts = figure.svg.split("data:image/png;base64,").skip(1);
     parts
@@ -83,7 +83,7 @@ pub fn compare(
 
 pub const DECIBEL: Scale = Scale::Decibel { floor: -60.0 };
 
-/// Returns a cut with a light, two blockers, a receiver and `count` planes.
+/// A cut with a light, two blockers, a receiver and `count` planes.
 pub fn scene(count: usize) -> Section {
     let segment = |kind, z: f64, x: [f64; 2], label: &str| Segment {
         kind,
@@ -152,19 +152,19 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
     strip(&path, &Style::default()).unwrap()
 }
 
-/// Returns a 5 × 3 array with one bright cell at high x and high y.
+/// A 5 × 3 array with one bright cell at high x and high y.
 pub fn corner() -> Array2<f64> {
     let mut values = Array2::zeros((5, 3));
     values[[4, 2]] = 1.0;
     values
 }
 
-/// Returns a plate of `count` columns, with long texts and bars.
+/// A plate of `count` columns, with long texts and bars.
 pub fn grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
     plate_of(count, values, |_| [16.5, 32.5])
 }
 
-/// Returns a plate of `count` columns with different axes for each picture.
+/// A plate of `count` columns with different axes for each picture.
 pub fn uneven_grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
     plate_of(count, values, |i| {
         [0.15 + 0.2 * i as f64, 0.3 + 7.0 * i as f64]

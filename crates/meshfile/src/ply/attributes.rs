@@ -92,7 +92,7 @@ impl AttributeReader {
     }
 }
 
-/// Returns all attributes of an element.
+/// All attributes of an element.
 fn all(element: &PlyElement) -> Vec<AttributeColumns> {
     let mut found = Vec::new();
     let color = COLORS.iter().find_map(|[r, g, b, a]| {

@@ -173,7 +173,7 @@ impl PlyRow<'_> {
     }
 }
 
-/// Returns the value of a PLY number. The type f64 represents the values of all eight PLY types
+/// The value of a PLY number. The type f64 represents the values of all eight PLY types
 /// exactly.
 fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     let mut little = [0; 8];
@@ -194,7 +194,7 @@ fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     }
 }
 
-/// Returns a value as a count or an index, if the value is a whole number in the range of u32.
+/// A value as a count or an index, if the value is a whole number in the range of u32.
 pub(super) fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,

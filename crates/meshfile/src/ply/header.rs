@@ -55,7 +55,7 @@ const LONGEST_NAME: usize = 100;
 const MOST_LISTED: usize = 4;
 
 impl PlyHeader {
-    /// Returns the header of a PLY file, and the lines after the header.
+    /// The header of a PLY file, and the lines after the header.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
         let mut lines = Lines::new(bytes);
         let first = lines.next().map_or(&[][..], |(_, line)| line);
@@ -154,14 +154,14 @@ impl PlyHeader {
 }
 
 impl PlyElement {
-    /// Returns the position of the property with a name; `None` unless it is present as a single
+    /// The position of the property with a name; `None` unless it is present as a single
     /// number.
     pub(super) fn column(&self, name: &str) -> Option<usize> {
         let mut properties = self.properties.iter();
         properties.position(|p| p.name == name && p.length.is_none())
     }
 
-    /// Returns the positions of the properties with the given names; `None` unless all of these
+    /// The positions of the properties with the given names; `None` unless all of these
     /// properties are present as single numbers.
     pub(super) fn columns<const N: usize>(&self, names: [&str; N]) -> Option<[usize; N]> {
         let found = names.map(|name| self.column(name));
@@ -173,7 +173,7 @@ impl PlyElement {
 }
 
 impl PlyProperty {
-    /// Returns the minimum number of bytes that the property takes in a row.
+    /// The minimum number of bytes that the property takes in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
             Encoding::Ascii => 2, // a digit and a separator

@@ -17,7 +17,7 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// Returns the rays of a plane; `None` if there is no such plane.
+    /// The rays of a plane; `None` if there is no such plane.
     pub(super) fn of(case: &MeasuredScene, plane: usize) -> Option<Self> {
         let VirtualPlane { name, distance, .. } = case.scene.planes.get(plane)?;
         let emitted = case.measurement.batches().map(|batch| batch.emitted).sum();
@@ -31,12 +31,12 @@ impl Rays {
         })
     }
 
-    /// Returns the power of a photon, W.
+    /// The power of a photon, W.
     pub(super) fn watts(&self, crossing: &Crossing) -> f64 {
         self.world.flux(crossing) / self.emitted as f64
     }
 
-    /// Returns the position in metres, the direction, and the power in W of a photon.
+    /// The position in metres, the direction, and the power in W of a photon.
     fn ray(&self, crossing: &Crossing) -> io::Result<([f64; 3], [f64; 3], f64)> {
         let [point, along] = self.world.ray(&crossing.ray).ok_or_else(|| {
             let what = "the crossing of a photon has no ray: this is a bug in etendue";
@@ -55,7 +55,7 @@ pub(super) enum Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// Returns the content of an MCPL file: photons of unknown energy, in f64.
+    /// The content of an MCPL file: photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
         // MCPL stores the number of emitted photons as a sum; if files are merged, these sums are
@@ -70,7 +70,7 @@ impl<'a> Content<'a> {
         Self::Mcpl(rays, Box::new(header), rows)
     }
 
-    /// Returns the content of a TM-25 file: rays without wavelengths, with the total flux `flux`
+    /// The content of a TM-25 file: rays without wavelengths, with the total flux `flux`
     /// in W.
     pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
         let mut header = tm25::Tm25Header {
@@ -100,6 +100,7 @@ impl<'a> Content<'a> {
                     bytes.extend(row.into_iter().flat_map(f64::to_le_bytes));
                 }
                 Self::Mcpl(rays, header, _) => {
+                    // MCPL has centimetres.
                     let (position, direction, weight) = rays.ray(crossing)?;
                     let photon = Particle {
                         position_cm: position.map(|c| 100.0 * c),
@@ -116,6 +117,7 @@ impl<'a> Content<'a> {
                         .map_err(io::Error::other)?;
                 }
                 Self::Tm25(rays, ..) => {
+                    // TM-25 has millimetres.
                     let (position, direction, power) = rays.ray(crossing)?;
                     let position = position.map(|c| 1000.0 * c);
                     let row = position.into_iter().chain(direction).chain([power]);

@@ -57,7 +57,7 @@ impl fmt::Debug for Leader<'_> {
 }
 
 impl<'a> Leader<'a> {
-    /// Returns the leader of `workers`; this process is number 0.
+    /// The leader of `workers`; this process is number 0.
     #[must_use]
     pub fn new(workers: &'a dyn Workers) -> Self {
         let other = Other {
@@ -97,6 +97,7 @@ impl<'a> Leader<'a> {
         let give = |number| packing.packed_partial(&taken(number));
         let mut others = Vec::new();
         let mut take = |piece: &Piece, bytes: &[u8]| {
+            // A process that ends returns the parts that it has finished, and another one continues.
             if piece.parts.is_some() {
                 let partial = packing.unpacked_partial(source, piece, bytes)?;
                 watch.begun(&partial);

@@ -6,10 +6,10 @@ use etendue_store::VERSION;
 
 /// Processes that work together, over any transport of bytes. Number 0 leads.
 pub trait Workers: Sync {
-    /// Returns the number of this process.
+    /// The number of this process.
     fn number(&self) -> usize;
 
-    /// Returns the number of processes, including this process.
+    /// The number of processes, including this process.
     fn count(&self) -> usize;
 
     /// Sends bytes to a process.
@@ -25,7 +25,7 @@ pub trait Workers: Sync {
     fn receive(&self) -> Result<(usize, Vec<u8>), String>;
 }
 
-/// Returns a key that identifies the scenes and the version of the program. All processes must
+/// A key that identifies the scenes and the version of the program. All processes must
 /// have the same key, so that all of them work on the same scenes.
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
     let words: String = scenes

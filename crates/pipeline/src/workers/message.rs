@@ -48,7 +48,7 @@ pub(crate) struct Order {
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// Returns a piece that is complete or not begun, with its bytes.
+/// A piece that is complete or not begun, with its bytes.
 pub(crate) fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     let piece = Piece {
         number,
@@ -58,7 +58,7 @@ pub(crate) fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     (piece, bytes)
 }
 
-/// Returns the bytes of a message: the bytes of `words`, which describes the pieces, followed by
+/// The bytes of a message: the bytes of `words`, which describes the pieces, followed by
 /// the bytes of the pieces.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,

@@ -17,12 +17,12 @@ pub struct Packing<'a> {
 }
 
 impl Packing<'_> {
-    /// Returns a batch as bytes. Fails if there is not enough memory for the bytes.
+    /// A batch as bytes. Fails if there is not enough memory for the bytes.
     pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
-    /// Returns the batch with this number, decoded from the bytes of [`Self::packed`]. The batch
+    /// The batch with this number, decoded from the bytes of [`Self::packed`]. The batch
     /// is identical to the batch that `source` emits. Fails if the bytes belong to another scene,
     /// seed or number of photons.
     pub fn unpacked(
@@ -40,7 +40,7 @@ impl Packing<'_> {
         checkpoints::unpacked(bytes, &held, &self.scene.planes)
     }
 
-    /// Returns the first parts of a batch as bytes.
+    /// The first parts of a batch as bytes.
     pub(crate) fn packed_partial(&self, batch: &PartialBatch) -> Result<Packed, Failure> {
         let bytes = batch
             .sum
@@ -54,7 +54,7 @@ impl Packing<'_> {
         Ok((piece, bytes))
     }
 
-    /// Returns the first parts of a batch, decoded from the bytes of [`Self::packed_partial`].
+    /// The first parts of a batch, decoded from the bytes of [`Self::packed_partial`].
     pub(crate) fn unpacked_partial(
         &self,
         source: &dyn PhotonSource,

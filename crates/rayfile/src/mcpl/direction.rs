@@ -37,7 +37,7 @@ fn inverse(z: f64) -> f64 {
     if z == 0.0 { f64::INFINITY } else { 1.0 / z }
 }
 
-/// Returns the vector that [`pack`] encoded as two numbers and a sign.
+/// The vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
     // Computes the omitted component, which is the largest component of a valid unit vector.

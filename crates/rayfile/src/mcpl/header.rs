@@ -34,7 +34,7 @@ pub struct McplHeader {
 }
 
 impl Default for McplHeader {
-    /// Returns a header of version 3, little-endian, f64, with a PDG code and a weight for each
+    /// A header of version 3, little-endian, f64, with a PDG code and a weight for each
     /// particle.
     fn default() -> Self {
         Self {
@@ -53,7 +53,7 @@ impl Default for McplHeader {
 }
 
 impl McplHeader {
-    /// Returns the header, the number of particles, and the offset of the first particle.
+    /// The header, the number of particles, and the offset of the first particle.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
         let mut cursor = ByteCursor::new(bytes, 8, little_endian);
@@ -115,14 +115,14 @@ impl McplHeader {
         stat::sums(&self.comments).map(|_| ())
     }
 
-    /// Returns the sums stored in comments.
+    /// The sums stored in comments.
     #[must_use]
     pub fn stat_sums(&self) -> Vec<StatSum> {
         // Comments are checked when the header is read or written.
         stat::sums(&self.comments).unwrap_or_default()
     }
 
-    /// Returns the number of bytes of a particle.
+    /// The number of bytes of a particle.
     #[must_use]
     pub fn record_size(&self) -> usize {
         let number = if self.single_precision { 4 } else { 8 };
@@ -132,7 +132,7 @@ impl McplHeader {
         number * numbers + 4 * codes
     }
 
-    /// Returns the bytes before the first particle, for files that are written incrementally.
+    /// The bytes before the first particle, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, count: u64) -> Vec<u8> {
         let little = self.little_endian;
@@ -164,7 +164,7 @@ impl McplHeader {
     }
 }
 
-/// Returns the version and the byte order.
+/// The version and the byte order.
 fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     let mut cursor = ByteCursor::new(bytes, 0, true);
     let start = cursor.take(8, "the signature of MCPL")?;
@@ -191,7 +191,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
 /// comment takes more bytes in memory than in the file.
 const MOST_TEXTS: u32 = 65_536;
 
-/// Returns the number of comments or blobs.
+/// The number of comments or blobs.
 fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;

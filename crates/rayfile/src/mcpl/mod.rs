@@ -68,7 +68,7 @@ impl McplFile {
         Ok(file)
     }
 
-    /// Returns a file of version 3 with the given particles, all of which must fit the header's
+    /// A file of version 3 with the given particles, all of which must fit the header's
     /// options.
     ///
     /// # Errors
@@ -95,13 +95,13 @@ impl McplFile {
         Ok(file)
     }
 
-    /// Returns the header, which applies to all particles.
+    /// The header, which applies to all particles.
     #[must_use]
     pub fn header(&self) -> &McplHeader {
         &self.header
     }
 
-    /// Returns the number of particles.
+    /// The number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count
@@ -113,13 +113,13 @@ impl McplFile {
         self.count == 0
     }
 
-    /// Returns all particles, in their order.
+    /// All particles, in their order.
     pub fn particles(&self) -> impl Iterator<Item = Particle> {
         // Each record was decoded when the file was read, so no particle is omitted.
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// Returns the bytes of the file. If the file was read, these bytes are the original bytes.
+    /// The bytes of the file. If the file was read, these bytes are the original bytes.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);
@@ -128,7 +128,7 @@ impl McplFile {
         bytes
     }
 
-    /// Returns the rays of the file in metres. The power of a ray is the weight of the particle,
+    /// The rays of the file in metres. The power of a ray is the weight of the particle,
     /// in W if the comment [`WATTS`] states this. Particles other than photons, and photons of
     /// energy 0, have no wavelength.
     #[must_use]
@@ -164,7 +164,7 @@ impl McplFile {
         set
     }
 
-    /// Returns the particle with an index within the file.
+    /// The particle with an index within the file.
     fn decode(&self, index: usize) -> Result<Particle, String> {
         let size = self.header.record_size();
         let record = self.records.get(index * size..(index + 1) * size);
@@ -173,7 +173,7 @@ impl McplFile {
     }
 }
 
-/// Returns a single wavelength if all rays have the same wavelength.
+/// A single wavelength if all rays have the same wavelength.
 fn shared(each: Vec<f64>) -> Wavelengths {
     let first = each.first().copied().unwrap_or(f64::NAN);
     if each.iter().all(|w| w.is_nan()) {

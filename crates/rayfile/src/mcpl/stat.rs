@@ -19,7 +19,7 @@ pub struct StatSum {
     pub value: Option<f64>,
 }
 
-/// Returns the comment that holds a sum. The value is written as the shortest decimal number that
+/// The comment that holds a sum. The value is written as the shortest decimal number that
 /// reads as the same f64.
 ///
 /// # Errors
@@ -38,7 +38,7 @@ pub fn stat_sum_comment(key: &str, value: f64) -> Result<Vec<u8>, Fault> {
     Ok(comment)
 }
 
-/// Returns the sums among comments.
+/// The sums among comments.
 pub(super) fn sums(comments: &[Vec<u8>]) -> Result<Vec<StatSum>, Fault> {
     let mut keys = BTreeSet::new();
     let mut sums = Vec::new();

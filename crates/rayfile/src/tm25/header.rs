@@ -37,7 +37,7 @@ pub struct Flags {
 }
 
 impl Flags {
-    /// Returns the names of the columns of rays, in order.
+    /// The names of the columns of rays, in order.
     fn names(self) -> Vec<&'static str> {
         let groups: [(bool, &[&str]); 7] = [
             (true, &["x", "y", "z", "kx", "ky", "kz"]),
@@ -55,13 +55,13 @@ impl Flags {
         present.flat_map(|(_, names)| names).copied().collect()
     }
 
-    /// Returns the column of a ray's power: radiant flux, or luminous flux if there is no radiant
+    /// The column of a ray's power: radiant flux, or luminous flux if there is no radiant
     /// flux.
     pub(super) fn power_column(self) -> usize {
         6 + usize::from(!self.radiant_flux && self.wavelength)
     }
 
-    /// Returns the columns that cannot hold negative numbers.
+    /// The columns that cannot hold negative numbers.
     pub(super) fn not_negative(self) -> impl Iterator<Item = usize> {
         let numbers = [self.radiant_flux, self.wavelength, self.luminous_flux];
         6..6 + numbers.map(usize::from).iter().sum::<usize>()
@@ -111,7 +111,7 @@ pub struct Tm25Header {
 }
 
 impl Default for Tm25Header {
-    /// Returns the header of simulated rays with a radiant flux and no further information.
+    /// The header of simulated rays with a radiant flux and no further information.
     fn default() -> Self {
         Self {
             version: 2013,
@@ -159,13 +159,13 @@ impl Tm25Header {
         "reference of the data",
     ];
 
-    /// Returns the number of columns of a ray.
+    /// The number of columns of a ray.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.flags.names().len() + self.extra_columns.len()
     }
 
-    /// Returns the name of a column of rays.
+    /// The name of a column of rays.
     pub(super) fn column_name(&self, at: usize) -> String {
         let names = self.flags.names();
         let extra = at.checked_sub(names.len());
@@ -177,7 +177,7 @@ impl Tm25Header {
             .unwrap_or_default()
     }
 
-    /// Returns the header, the number of rays, and the offset of the first ray.
+    /// The header, the number of rays, and the offset of the first ray.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
         let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
@@ -387,7 +387,7 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// Returns the bytes before the first ray, for files that are written incrementally.
+    /// The bytes before the first ray, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, rays: u64) -> Vec<u8> {
         // All lengths fit into 32 bits, because no file is longer.

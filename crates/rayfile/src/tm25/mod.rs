@@ -71,7 +71,7 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// Returns a file with the given rays, each with as many numbers as [`Tm25Header::columns`] counts.
+    /// A file with the given rays, each with as many numbers as [`Tm25Header::columns`] counts.
     ///
     /// # Errors
     /// When the header or the rays are invalid.
@@ -94,7 +94,7 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// Returns the header, which applies to all rays.
+    /// The header, which applies to all rays.
     #[must_use]
     pub fn header(&self) -> &Tm25Header {
         &self.header
@@ -106,7 +106,7 @@ impl Tm25File {
         &self.notes
     }
 
-    /// Returns the number of rays.
+    /// The number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.numbers.len() / self.header.columns()
@@ -118,12 +118,12 @@ impl Tm25File {
         self.numbers.is_empty()
     }
 
-    /// Returns the numbers of each ray.
+    /// The numbers of each ray.
     fn rows(&self) -> impl Iterator<Item = &[f32]> {
         self.numbers.chunks_exact(self.header.columns())
     }
 
-    /// Returns the bytes of the file.
+    /// The bytes of the file.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.len() as u64);
@@ -132,7 +132,7 @@ impl Tm25File {
         bytes
     }
 
-    /// Returns the rays of the file, in metres. Power is in W if rays state radiant flux, and
+    /// The rays of the file, in metres. Power is in W if rays state radiant flux, and
     /// otherwise in lm. A wavelength of 0 is unknown.
     #[must_use]
     pub fn rays(&self) -> RaySet {
@@ -175,7 +175,7 @@ impl Tm25File {
         }
     }
 
-    /// Returns the radiant flux of 1 lm, in W, if the header states both fluxes.
+    /// The radiant flux of 1 lm, in W, if the header states both fluxes.
     #[must_use]
     pub fn watts_per_lumen(&self) -> Option<f64> {
         let Tm25Header {
@@ -187,7 +187,7 @@ impl Tm25File {
         stated.then(|| f64::from(radiant_flux) / f64::from(luminous_flux))
     }
 
-    /// Returns the first spectral table, in metres.
+    /// The first spectral table, in metres.
     fn spectrum(&self) -> Vec<[f64; 2]> {
         let table = self.header.spectra.first().into_iter().flatten();
         let row =

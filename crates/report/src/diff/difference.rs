@@ -50,7 +50,7 @@ impl Diff {
         })
     }
 
-    /// Returns the number of tests of slices, and the number of tests of parameters.
+    /// The number of tests of slices, and the number of tests of parameters.
     pub(super) fn tests(&self) -> [usize; 2] {
         let compared = || self.planes.iter().filter_map(PlaneDiff::compared);
         let slices = compared().filter(|plane| plane.test.p_value.is_some());
@@ -58,14 +58,14 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// Returns the significance level of each test. If the results do not differ, some test finds a
+    /// The significance level of each test. If the results do not differ, some test finds a
     /// difference with probability α.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
     }
 
-    /// Returns the verdict from all tests together.
+    /// The verdict from all tests together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let level = self.level();

@@ -7,7 +7,7 @@ use etendue_compare::Estimate;
 use etendue_store::fields::FieldChange;
 use serde_json::{Value, json};
 
-/// Returns the numbers of [`text`](super::text). The verdict *pass* means that the results are the
+/// The numbers of [`text`](super::text). The verdict *pass* means that the results are the
 /// same, and *fail* that they differ.
 #[must_use]
 pub fn json(diff: &Diff) -> Value {

@@ -94,7 +94,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Returns the reason why the plane is undecided, or `None` if it is decided.
+    /// The reason why the plane is undecided, or `None` if it is decided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
@@ -110,7 +110,7 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// Returns the parameters that are tested, with their differences in standard errors.
+    /// The parameters that are tested, with their differences in standard errors.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
@@ -138,7 +138,7 @@ impl Compared {
     }
 }
 
-/// Returns all planes of two results, in the order of the first result.
+/// All planes of two results, in the order of the first result.
 pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
@@ -204,7 +204,7 @@ impl ResultPair<'_> {
         a == b
     }
 
-    /// Returns why the slices of the two results cannot be subtracted.
+    /// Why the slices of the two results cannot be subtracted.
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
@@ -259,7 +259,7 @@ impl ResultPair<'_> {
         }
     }
 
-    /// Returns the reason why the outcome of the tests cannot be trusted for these photons, if
+    /// The reason why the outcome of the tests cannot be trusted for these photons, if
     /// there is one.
     fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
         let results = [self.a, self.b];
@@ -291,7 +291,7 @@ impl ResultPair<'_> {
         None
     }
 
-    /// Returns the reason why the results may differ even though the test detects no difference.
+    /// The reason why the results may differ even though the test detects no difference.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -316,7 +316,7 @@ impl ResultPair<'_> {
     }
 }
 
-/// Returns a number of photons per batch. This many photons of equal weight would vary as much as
+/// A number of photons per batch. This many photons of equal weight would vary as much as
 /// the light of this sample. Returns `None` if this number is so large that no batch would be
 /// empty. `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
@@ -327,7 +327,7 @@ fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     (sigma > 0.0 && each < libm::log(batches)).then_some(each)
 }
 
-/// Returns ‖a − b‖ divided by the larger norm, or 0 if both norms are 0.
+/// ‖a − b‖ divided by the larger norm, or 0 if both norms are 0.
 fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     let sample = |mean: &Array3<Complex>| Sample {
         mean: mean.clone(),
@@ -338,7 +338,7 @@ fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     TwoSamples::new(grid, &sample(a), &sample(b)).difference
 }
 
-/// Returns the definition of a plane's slices: its window, quantity and coordinates.
+/// The definition of a plane's slices: its window, quantity and coordinates.
 fn view(scene_file: &Value, name: &str) -> Value {
     let planes = scene_file["planes"].as_array();
     let mut planes = planes.into_iter().flatten();

@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Returns the error of a folder without a result. The folder of `run --rgb` has a result in each
+/// The error of a folder without a result. The folder of `run --rgb` has a result in each
 /// of its folders.
 #[must_use]
 pub fn no_result(folder: &Path) -> Failure {
@@ -151,12 +151,12 @@ impl StoredResult {
         self.index.planes.iter().find(|plane| plane.name == name)
     }
 
-    /// Returns the hash of the file with a plane's arrays.
+    /// The hash of the file with a plane's arrays.
     pub(super) fn hash(&self, plane: &str) -> Option<&String> {
         self.index.files.get(&slices_of(plane))
     }
 
-    /// Returns the slices of a plane from the plane's arrays.
+    /// The slices of a plane from the plane's arrays.
     pub(super) fn slices(&self, plane: &StoredPlane) -> Result<StoredSlices, Failure> {
         let name = slices_of(&plane.name);
         let bytes = listed_bytes(&self.folder, SUMMARY, &self.index.files, &name)?;
@@ -198,7 +198,7 @@ impl StoredResult {
     }
 }
 
-/// Returns the half with ρ ≥ 0 of an array [azimuth, ρ, ν].
+/// The half with ρ ≥ 0 of an array [azimuth, ρ, ν].
 fn half<A: Clone>(array: &Array3<A>, grid: &SliceGrid) -> Array3<A> {
     let (_, half) = array.view().split_at(Axis(1), grid.rho.half);
     half.to_owned()

@@ -11,7 +11,7 @@ use etendue_store::fields::FieldChange;
 /// The maximum number of differing fields that are listed.
 const MOST_FIELDS: usize = 8;
 
-/// Returns the output of `etendue diff`.
+/// The output of `etendue diff`.
 #[must_use]
 pub fn text(diff: &Diff) -> String {
     let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
@@ -145,7 +145,7 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Returns a sentence with the verdict and its reasons.
+/// A sentence with the verdict and its reasons.
 fn verdict(diff: &Diff) -> String {
     let level = diff.level();
     let alpha = format!("{} %", tidy(100.0 * diff.alpha));

@@ -44,7 +44,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// Returns all segments of the cut, each with the leg on which light arrives at the segment.
+    /// All segments of the cut, each with the leg on which light arrives at the segment.
     pub(super) fn pieces(&self, planes: &[&VirtualPlane]) -> Vec<(usize, Segment)> {
         let scene = self.scene;
         let half_width = self.half_width(planes);
@@ -94,7 +94,7 @@ impl CuttingPlane<'_> {
         pieces
     }
 
-    /// Returns three coordinates of a point in a leg's frame. The first is along the leg, the
+    /// Three coordinates of a point in a leg's frame. The first is along the leg, the
     /// second is across the leg within the cut, and the third is across the cut.
     fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
         let local = leg.frame.to_local(point);
@@ -106,7 +106,7 @@ impl CuttingPlane<'_> {
         [leg.start + local.z, within, off]
     }
 
-    /// Returns the half-width of the drawing. It is slightly larger than the half-width of the
+    /// The half-width of the drawing. It is slightly larger than the half-width of the
     /// light, of each bounded blocker and of each window.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
@@ -147,7 +147,7 @@ impl CuttingPlane<'_> {
         1.12 * reach.map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// Returns the leg on which light arrives at an object. For an object that the path does not
+    /// The leg on which light arrives at an object. For an object that the path does not
     /// visit, returns the first leg.
     fn arriving(&self, object: Object) -> usize {
         let path = &self.scene.path;
@@ -155,7 +155,7 @@ impl CuttingPlane<'_> {
         (0..path.legs.len()).find(ends).unwrap_or(0)
     }
 
-    /// Returns the segment that the cut of a leg has in common with a flat outline, as points (z,
+    /// The segment that the cut of a leg has in common with a flat outline, as points (z,
     /// x). z is the distance along the path.
     fn cut(&self, corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
         let corners: Vec<[f64; 3]> = corners.iter().map(|p| self.local(leg, *p)).collect();
@@ -173,7 +173,7 @@ impl CuttingPlane<'_> {
         points.try_into().ok()
     }
 
-    /// Returns the curve (z, x) in which the cut of a leg meets a smooth surface. The curve passes
+    /// The curve (z, x) in which the cut of a leg meets a smooth surface. The curve passes
     /// through the vertex of the surface.
     fn profile(&self, patch: &Patch, leg: &Leg) -> Vec<[f64; 2]> {
         const STEPS: i32 = 24;
@@ -188,7 +188,7 @@ impl CuttingPlane<'_> {
         (-STEPS..=STEPS).map(at).collect()
     }
 
-    /// Returns the segments of all lights. If there are several, their labels have numbers.
+    /// The segments of all lights. If there are several, their labels have numbers.
     fn lights(&self) -> Vec<Segment> {
         let mut all: Vec<Segment> = self.scene.lights().map(|of| self.light(of)).collect();
         if all.len() > 1 {
@@ -199,7 +199,7 @@ impl CuttingPlane<'_> {
         all
     }
 
-    /// Returns the segment of a light. `scene` is the scene in which it is the only light.
+    /// The segment of a light. `scene` is the scene in which it is the only light.
     fn light(&self, scene: &Scene) -> Segment {
         let depth = self.scene.path.first_hit() - scene.path.first_hit();
         let dot = 0.005 * scene.path.first_hit();
@@ -226,7 +226,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// Returns the intervals in which a layer stops at least half of the light. The intervals of
+    /// The intervals in which a layer stops at least half of the light. The intervals of
     /// gratings extend slightly beyond the visible range.
     fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
         let axis = self.axis;
@@ -286,7 +286,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// Returns the outline in which the cut of a leg meets a mesh.
+    /// The outline in which the cut of a leg meets a mesh.
     fn mesh(&self, mesh: &MeshObject, leg: &Leg) -> Vec<Segment> {
         let kind = mesh
             .albedo
@@ -336,7 +336,7 @@ const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// be distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
-/// Returns the bits of a point's coordinates, which serve as the key of a map.
+/// The bits of a point's coordinates, which serve as the key of a map.
 fn key(point: [f64; 2]) -> [u64; 2] {
     point.map(f64::to_bits)
 }

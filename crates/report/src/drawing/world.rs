@@ -12,7 +12,7 @@ const ENDLESS_METRES: f64 = 1e4;
 /// by less than this number.
 const STRAIGHT: f64 = 1e-9;
 
-/// Returns the drawing of the scene to scale; `None` if the path stays on one line.
+/// The drawing of the scene to scale; `None` if the path stays on one line.
 pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorld> {
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;

@@ -120,7 +120,7 @@ fn encoded(values: ArrayView2<'_, f64>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// Returns the data of a run as JSON. The data include the strip along the path as SVG, and the
+/// The data of a run as JSON. The data include the strip along the path as SVG, and the
 /// address at which the explorer shows the scene, if there is one.
 pub fn data(
     case: &MeasuredScene,
@@ -211,7 +211,7 @@ impl<'a> PlaneData<'a> {
     }
 }
 
-/// Returns the pictures |S|², |F|² and |S − F|/σ at each azimuth.
+/// The pictures |S|², |F|² and |S − F|/σ at each azimuth.
 fn slices(found: &PlaneComparison) -> Vec<Grids> {
     let measured = found.measured.half.outer_iter();
     let predicted = found.predicted.half.outer_iter();

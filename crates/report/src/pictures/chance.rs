@@ -45,7 +45,7 @@ impl Outliers {
         all
     }
 
-    /// Returns a sentence that states these three numbers.
+    /// A sentence that states these three numbers.
     pub(super) fn words(&self) -> String {
         let Self {
             cells,
@@ -58,7 +58,7 @@ impl Outliers {
     }
 }
 
-/// Returns the probability that the modulus of a shifted gamma variable exceeds 4. The variable has
+/// The probability that the modulus of a shifted gamma variable exceeds 4. The variable has
 /// mean 0, variance 1 and this skewness. The function uses the approximation of Wilson and Hilferty
 /// (1931).
 fn beyond(skewness: f64) -> f64 {

@@ -17,7 +17,7 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
 }
 
-/// Returns the light field over (y, v) in 64 × 64 cells that fill ± `half_widths`. The field is
+/// The light field over (y, v) in 64 × 64 cells that fill ± `half_widths`. The field is
 /// multiplied by the window and integrated over x and u. Within the range of the frequencies, its
 /// spectrum is the slice at azimuth 90°. Returns `None` if there is no slice at azimuth 90°.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {

@@ -57,7 +57,7 @@ impl Finer {
         })
     }
 
-    /// Returns the spectrum on the finer frequencies.
+    /// The spectrum on the finer frequencies.
     pub(super) fn of(&self, slices: &Slices) -> Slices {
         let mut finer = Slices::zeros(self.grid);
         let full = slices.full();
@@ -81,7 +81,7 @@ impl Finer {
     }
 }
 
-/// Returns the mean power over azimuths at the finer frequencies. The noise that was removed from
+/// The mean power over azimuths at the finer frequencies. The noise that was removed from
 /// `power`, at the frequencies of the scene, is also removed here.
 pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
     let noise = slices.radial_power() - power;
@@ -111,7 +111,7 @@ fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     }
 }
 
-/// Returns the two given frequencies around each finer frequency, with their weights.
+/// The two given frequencies around each finer frequency, with their weights.
 fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     let last = from.count() - 1;
     let place = |value: f64| {
@@ -166,7 +166,7 @@ impl WindowCovariance {
     }
 }
 
-/// Returns the weights of given frequencies for finer frequencies; `None` if the given frequencies
+/// The weights of given frequencies for finer frequencies; `None` if the given frequencies
 /// do not determine all intermediate values.
 fn weights(
     from: &FrequencyAxis,
@@ -224,7 +224,7 @@ impl Cholesky {
         Self(l)
     }
 
-    /// Returns A⁻¹ B for the matrix B, `right`.
+    /// A⁻¹ B for the matrix B, `right`.
     fn solve(&self, mut right: Array2<f64>) -> Array2<f64> {
         let (l, count) = (&self.0, right.nrows());
         for i in 0..count {
@@ -247,7 +247,7 @@ impl Cholesky {
     }
 }
 
-/// Returns the product A B. The sum is written out, because matrix products of the array library
+/// The product A B. The sum is written out, because matrix products of the array library
 /// differ in their bits between processors.
 fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
     let mut product = Array2::zeros((a.nrows(), b.ncols()));
@@ -271,7 +271,7 @@ mod tests {
         v: Profile::Hann(0.4),
     };
 
-    /// Returns the slices of a few rays, each with the weight of the window.
+    /// The slices of a few rays, each with the weight of the window.
     fn of_rays(grid: SliceGrid) -> Slices {
         let rays = [
             [0.1, -0.2, 0.3, 0.05],

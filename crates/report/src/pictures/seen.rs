@@ -20,7 +20,7 @@ pub struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    /// Returns the measured light field in (x, u).
+    /// The measured light field in (x, u).
     pub fn light_field(&self) -> Picture<'a> {
         let field = &self.found.projection.mean;
         Picture::new(
@@ -29,7 +29,7 @@ impl<'a> Seen<'a> {
         )
     }
 
-    /// Returns a light field in (y, v) in cells that fill the same half-widths.
+    /// A light field in (y, v) in cells that fill the same half-widths.
     pub fn across<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
         Picture::new(
             across_axes(self.plane, &self.found.projection.mean.grid),
@@ -37,12 +37,12 @@ impl<'a> Seen<'a> {
         )
     }
 
-    /// Returns a spectrum at the frequencies of the plane.
+    /// A spectrum at the frequencies of the plane.
     pub fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
         Picture::new(spectrum_axes(self.plane), values)
     }
 
-    /// Returns the full radial spectrum, measured and predicted, if there is one.
+    /// The full radial spectrum, measured and predicted, if there is one.
     fn full_radial(&self) -> Option<[Picture<'a>; 2]> {
         let full = self.found.full_radial.as_ref()?;
         let axes = || full_radial_axes(self.plane, &full.measured);
@@ -52,7 +52,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Returns a row of light fields.
+/// A row of light fields.
 pub fn light_fields<'a>(
     name: &'a str,
     shared: bool,
@@ -68,7 +68,7 @@ pub fn light_fields<'a>(
     )
 }
 
-/// Returns a row of spectra.
+/// A row of spectra.
 pub fn spectra<'a>(
     name: &'a str,
     shared: bool,
@@ -83,7 +83,7 @@ pub fn spectra<'a>(
     )
 }
 
-/// Returns the rows of full radial spectra, measured and predicted, if each plane has such a
+/// The rows of full radial spectra, measured and predicted, if each plane has such a
 /// spectrum.
 pub fn full_radials<'a>(
     seen: impl Iterator<Item = Seen<'a>>,

@@ -77,7 +77,7 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// Returns the rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are
+/// The rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are
 /// shown, and `off_chain` has the distances from the chain if they are shown.
 fn rows_of<'a>(
     along: &'a [PlaneOnPath<'_>],
@@ -145,7 +145,7 @@ struct PlaneOnPath<'a> {
     guides: Vec<Guide>,
 }
 
-/// Returns the planes in the order in which light meets them.
+/// The planes in the order in which light meets them.
 fn in_order<'a>(
     scene: &'a Scene,
     theories: &'a [Applicability],
@@ -166,7 +166,7 @@ fn in_order<'a>(
 }
 
 impl<'a> PlaneOnPath<'a> {
-    /// Returns a spectrum with its predicted lines.
+    /// A spectrum with its predicted lines.
     fn spectrum(&self, power: &'a Array2<f64>) -> Picture<'a> {
         Picture {
             guides: self.guides.clone(),
@@ -174,7 +174,7 @@ impl<'a> PlaneOnPath<'a> {
         }
     }
 
-    /// Returns the measured radial power between the frequencies of the scene.
+    /// The measured radial power between the frequencies of the scene.
     fn finer_power(&self) -> Option<Array2<f64>> {
         let PlaneComparison {
             measured, radial, ..
@@ -214,7 +214,7 @@ impl BothSlices {
         })
     }
 
-    /// Returns the spectrum at azimuth 0 (side 0) or 90° (side 1).
+    /// The spectrum at azimuth 0 (side 0) or 90° (side 1).
     fn spectrum<'a>(&'a self, seen: Seen<'_>, side: usize) -> Picture<'a> {
         Picture {
             finer: self.finer.as_ref().map(|finer| finer[side].view()),
@@ -224,7 +224,7 @@ impl BothSlices {
     }
 }
 
-/// Returns the lines over the spectra at azimuths 0 and 90°. If there are two lines through the
+/// The lines over the spectra at azimuths 0 and 90°. If there are two lines through the
 /// origin, the first line belongs to the plane of incidence.
 fn by_azimuth(guides: &[Guide]) -> [Vec<Guide>; 2] {
     let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
@@ -245,7 +245,7 @@ fn by_azimuth(guides: &[Guide]) -> [Vec<Guide>; 2] {
     [own, across]
 }
 
-/// Returns the differences between the photons and the first-order chains, if the map of one chain
+/// The differences between the photons and the first-order chains, if the map of one chain
 /// is wrong.
 fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     let fails = along.iter().any(|at| {
@@ -266,7 +266,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     }
 }
 
-/// Returns a description of the predicted lines of a strip.
+/// A description of the predicted lines of a strip.
 fn predicted_lines(along: &[PlaneOnPath<'_>], planes: &[PlaneComparison]) -> &'static str {
     let mut guides = along.iter().flat_map(|at| &at.guides);
     let has_replicas = guides.clone().any(|guide| guide.through != [0.0, 0.0]);
@@ -281,7 +281,7 @@ fn predicted_lines(along: &[PlaneOnPath<'_>], planes: &[PlaneComparison]) -> &'s
     }
 }
 
-/// Returns the difference between the photons and the first-order chain, in percent of the largest
+/// The difference between the photons and the first-order chain, in percent of the largest
 /// measured |S|, [ρ, ν].
 fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     let power = &compared.radial.power;
@@ -292,7 +292,7 @@ fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     }
 }
 
-/// Returns the predicted lines over the spectrum of a plane.
+/// The predicted lines over the spectrum of a plane.
 fn all_guides(scene: &Scene, seen: Seen<'_>, theory: &Applicability) -> Vec<Guide> {
     let report = &seen.found.report;
     match (&theory.theory, &report.first_order) {
@@ -316,7 +316,7 @@ fn all_guides(scene: &Scene, seen: Seen<'_>, theory: &Applicability) -> Vec<Guid
     }
 }
 
-/// Returns lines along which theory predicts the power of the spectrum. After light has travelled a
+/// Lines along which theory predicts the power of the spectrum. After light has travelled a
 /// distance d, its spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f,
 /// the spectrum also lies along parallel lines through (± f, ∓ h f). These lines are returned if
 /// the window and the frequencies resolve them. After a diffuse surface, only ν = 0 remains, and d
@@ -345,7 +345,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Returns lines for a picture, in the plane of incidence and across it. According to the chain,
+/// Lines for a picture, in the plane of incidence and across it. According to the chain,
 /// the spectrum lies along these lines. At the light, the spectrum of a projector lies along ρ, and
 /// the spectrum of a beam lies along ν. The map of the chain moves the value of the spectrum at Ω
 /// to A⁻ᵀ Ω.

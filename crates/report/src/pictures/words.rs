@@ -38,7 +38,7 @@ impl CoordinateNames {
         }
     }
 
-    /// Returns the quantity of a light field that is integrated over the other two coordinates.
+    /// The quantity of a light field that is integrated over the other two coordinates.
     pub(super) fn light_field_quantity(&self) -> AxisQuantity {
         let [a, b] = self.across;
         AxisQuantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
@@ -53,17 +53,17 @@ fn projection_axes([x, u]: [&str; 2], plane: &VirtualPlane, grid: &ProjectionGri
     ]
 }
 
-/// Returns the axes of the light field of a plane, (x, u) across its ray.
+/// The axes of the light field of a plane, (x, u) across its ray.
 pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     projection_axes(CoordinateNames::of(plane).along, plane, grid)
 }
 
-/// Returns the axes of the light field across the other two coordinates, (y, v).
+/// The axes of the light field across the other two coordinates, (y, v).
 pub(super) fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     projection_axes(CoordinateNames::of(plane).across, plane, grid)
 }
 
-/// Returns the axes of the spectrum of a plane, (ρ, ν).
+/// The axes of the spectrum of a plane, (ρ, ν).
 pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     let axis = |name, unit, axis: &FrequencyAxis| {
         Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
@@ -75,7 +75,7 @@ pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     ]
 }
 
-/// Returns the axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each
+/// The axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each
 /// axis contains zero. The first ring is half as wide as the others, but is drawn at equal width.
 pub(super) fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
@@ -91,17 +91,17 @@ pub(super) fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 
     ]
 }
 
-/// Returns the quantity of a full radial spectrum.
+/// The quantity of a full radial spectrum.
 pub(super) fn full_radial_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
 
-/// Returns the quantity of a light field across the ray.
+/// The quantity of a light field across the ray.
 pub(crate) fn light_field_quantity() -> AxisQuantity {
     CoordinateNames::ACROSS.light_field_quantity()
 }
 
-/// Returns the quantity of a radial spectrum.
+/// The quantity of a radial spectrum.
 pub(super) fn spectrum_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }

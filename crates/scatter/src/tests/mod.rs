@@ -46,7 +46,7 @@ fn samples_know_their_density() {
     });
 }
 
-/// Returns the means of two quantities over samples, each with its standard error. The first
+/// The means of two quantities over samples, each with its standard error. The first
 /// quantity is the weight of samples with a density, and the second is all flux that leaves.
 fn means(model: &Model, wo: DVec3) -> [[f64; 2]; 2] {
     let mut sums = [[0.0; 2]; 2];
@@ -137,7 +137,7 @@ fn smooth_interfaces_refract_by_snell() {
     }
 }
 
-/// Returns pairs of directions in front of the surface.
+/// Pairs of directions in front of the surface.
 fn pairs() -> impl Iterator<Item = [DVec3; 2]> {
     let direction = |[a, b, _]: [f64; 3]| crate::lambertian::sample([a, b]);
     let first = numbers().step_by(200).map(direction);

@@ -79,7 +79,7 @@ where
     }
 }
 
-/// Returns the largest weight for sampling by visible normals. For GGX, this weight is Smith's
+/// The largest weight for sampling by visible normals. For GGX, this weight is Smith's
 /// masking of one direction, plus rounding error. Beckmann's normals are sampled by GGX, so the
 /// weight of Beckmann's facets is larger by the ratios of D, 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
@@ -275,7 +275,7 @@ fn mixtures() -> Vec<Model> {
     models
 }
 
-/// Returns all models.
+/// All models.
 pub(super) fn all() -> Vec<Model> {
     let mut models = vec![
         lambert(),

@@ -15,7 +15,7 @@ use glam::DVec3;
 const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
-    /// Returns the layers of blockers that lie across the central ray.
+    /// The layers of blockers that lie across the central ray.
     pub(super) fn blockers(&mut self, file: &SceneFile, frame: &Frame) -> Vec<BlockerLayer> {
         let blockers = file.blockers.iter().enumerate();
         blockers
@@ -40,7 +40,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the layer of blockers; `None` if the blockers are a mesh.
+    /// The layer of blockers; `None` if the blockers are a mesh.
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Bars { name, center, .. }
@@ -62,7 +62,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the mask of the blockers, and the distance between the repetitions of the mask.
+    /// The mask of the blockers, and the distance between the repetitions of the mask.
     fn mask(
         &mut self,
         of: &str,
@@ -170,7 +170,7 @@ impl Resolver<'_> {
         (0..count).map(bar).collect()
     }
 
-    /// Returns the dark pixels of a picture about `center`, as rectangles.
+    /// The dark pixels of a picture about `center`, as rectangles.
     fn dark_pixels(
         &mut self,
         of: &str,
@@ -197,7 +197,7 @@ impl Resolver<'_> {
         rectangles.into_iter().map(Shape::Rectangle).collect()
     }
 
-    /// Returns the mask of the shapes, moved to `center`.
+    /// The mask of the shapes, moved to `center`.
     fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
         if !(1..=limits::SHAPES).contains(&files.len()) {
             let allowed = format!("1 to {} shapes", limits::SHAPES);

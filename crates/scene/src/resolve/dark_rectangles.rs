@@ -44,7 +44,7 @@ pub(super) fn dark_rectangles(raster: &Raster, center: [f64; 2], size: [f64; 2])
     rectangles
 }
 
-/// Returns the runs of dark pixels of a row.
+/// The runs of dark pixels of a row.
 fn runs(values: &[f64]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (column, _) in values.iter().enumerate().filter(|(_, v)| **v < DARK) {

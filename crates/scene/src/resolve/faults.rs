@@ -63,7 +63,7 @@ impl Faults {
         self.all.iter().any(below)
     }
 
-    /// Returns the faults without duplicates, which arise because planes share the window and
+    /// The faults without duplicates, which arise because planes share the window and
     /// frequencies of the scene.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
@@ -95,18 +95,18 @@ fn is_of_place(field: &str) -> bool {
         || starts(of_things("blockers["), &["center", "mesh", "scale"])
 }
 
-/// Returns a vector as it is written in a scene file.
+/// A vector as it is written in a scene file.
 pub(super) fn vector(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("({})", values.join(", "))
 }
 
-/// Returns a value as it is written in a scene file, truncated for a message.
+/// A value as it is written in a scene file, truncated for a message.
 pub(super) fn show(value: impl Debug) -> String {
     shown(format_args!("{value:?}"), limits::VALUE)
 }
 
-/// Returns the list of allowed names for a message.
+/// The list of allowed names for a message.
 pub(super) fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     let first = all.by_ref().take(limits::FAULTS);
     let mut listed: Vec<String> = first.map(|name| shown(name, limits::NAME)).collect();

@@ -2,7 +2,7 @@
 
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
-/// Returns the paths of the objects with a given name, such as `blockers[0]` or `surfaces[0]`.
+/// The paths of the objects with a given name, such as `blockers[0]` or `surfaces[0]`.
 pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
     let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
     let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();

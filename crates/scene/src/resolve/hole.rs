@@ -17,7 +17,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the hole of an aperture, with coordinates as in the file; `None` if the hole is not
+    /// The hole of an aperture, with coordinates as in the file; `None` if the hole is not
     /// allowed.
     pub(super) fn hole(&mut self, of: &str, file: &HoleFile) -> Option<Hole> {
         let corners = match file {

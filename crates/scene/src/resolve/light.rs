@@ -6,7 +6,7 @@ use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
 use etendue_scenefile::{BulbFile, ColorFile, ImageFile, LightFile};
 
 impl Resolver<'_> {
-    /// Returns the light at the origin of the central ray, which is the origin of the frame at
+    /// The light at the origin of the central ray, which is the origin of the frame at
     /// the light.
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         let number = |color: ColorFile| color.number(self.color);

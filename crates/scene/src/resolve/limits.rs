@@ -84,7 +84,7 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
     blockers.chain(surfaces)
 }
 
-/// Returns the approximate number of triangles of a generated mesh, or zero for a mesh that will
+/// The approximate number of triangles of a generated mesh, or zero for a mesh that will
 /// be refused.
 fn triangles(mesh: &MeshSource) -> u64 {
     let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);

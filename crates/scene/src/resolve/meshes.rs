@@ -26,7 +26,7 @@ struct PlacedMesh<'a> {
 }
 
 impl Resolver<'_> {
-    /// Returns the meshes: blockers, then surfaces.
+    /// The meshes: blockers, then surfaces.
     pub(super) fn meshes(&mut self, file: &SceneFile, frame: &Frame) -> Vec<MeshObject> {
         let blockers = file
             .blockers
@@ -118,7 +118,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns a smooth mesh with the normals of its vertices.
+    /// A smooth mesh with the normals of its vertices.
     fn smooth(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -178,7 +178,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the largest distance from the origin at which light may start at the light source or
+/// The largest distance from the origin at which light may start at the light source or
 /// leave a surface. The distance bounds the coordinates of rays and meshes.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {

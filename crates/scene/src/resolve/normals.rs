@@ -23,7 +23,7 @@ use glam::DVec3;
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// Returns the normal of each vertex, the area-weighted mean of the normals of the triangles
+    /// The normal of each vertex, the area-weighted mean of the normals of the triangles
     /// around it. The normal of a vertex without triangles is zero.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
@@ -100,7 +100,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns a vector along the normal of a triangle; its length is twice the triangle's area.
+/// A vector along the normal of a triangle; its length is twice the triangle's area.
 fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

@@ -15,7 +15,7 @@ const ON_RAY: f64 = 1e-9;
 const TRIANGLE: f64 = 150.0;
 
 impl Resolver<'_> {
-    /// Returns a scene for each further light of a scene.
+    /// A scene for each further light of a scene.
     pub(super) fn other_lights(&mut self, scene: &Scene) -> Vec<Scene> {
         self.copies(scene);
         let others = scene.file.other_lights.iter().enumerate();
@@ -120,13 +120,13 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns a frame of the scene in the coordinates at a light at the distance `depth`.
+/// A frame of the scene in the coordinates at a light at the distance `depth`.
 fn behind(depth: f64, frame: &Frame) -> Frame {
     let origin = frame.origin - DVec3::Z * depth;
     Frame { origin, ..*frame }
 }
 
-/// Returns a scene whose distances begin at the distance `depth` on the central ray. Layers before
+/// A scene whose distances begin at the distance `depth` on the central ray. Layers before
 /// this distance are kept, because light that a surface sends back may meet them.
 fn moved(scene: &Scene, depth: f64) -> Scene {
     let mut moved = scene.clone();

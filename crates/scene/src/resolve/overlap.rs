@@ -11,7 +11,7 @@ pub(super) enum Thing {
     HalfPlane(usize),
 }
 
-/// Returns the first two shapes or half-planes that overlap; all coordinates must be finite.
+/// The first two shapes or half-planes that overlap; all coordinates must be finite.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
     // Among any three half-planes, two overlap, so only the first three are tested.
     let first = &half_planes[..half_planes.len().min(3)];
@@ -51,7 +51,7 @@ fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns the lowest and the highest coordinates of a shape.
+/// The lowest and the highest coordinates of a shape.
 fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     let bounds = shape.bounds();
     let [[left, right], [bottom, top]] = [bounds.extent(0), bounds.extent(1)];

@@ -9,7 +9,7 @@ use etendue_scenefile::{EventFile, FormFile, SceneFile, SurfaceFile};
 use glam::DVec3;
 
 impl Resolver<'_> {
-    /// Returns the smooth surfaces.
+    /// The smooth surfaces.
     pub(super) fn patches(&mut self, file: &SceneFile, light: &Frame) -> Vec<PatchObject> {
         let surfaces = file.surfaces.iter().enumerate();
         surfaces
@@ -87,7 +87,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the specular event of a surface; `None` if the surface reflects by a BRDF.
+    /// The specular event of a surface; `None` if the surface reflects by a BRDF.
     pub(super) fn specular(
         &mut self,
         of: &str,

@@ -18,7 +18,7 @@ const MIN_LEG_SHARE: f64 = 1e-9;
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// Returns the legs up to and including the first faulty leg, whose length is NaN.
+    /// The legs up to and including the first faulty leg, whose length is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,
@@ -65,7 +65,7 @@ impl Resolver<'_> {
         CentralRay { frame, legs }
     }
 
-    /// Returns the distance along the leg at which the central ray makes visit `i` to a surface,
+    /// The distance along the leg at which the central ray makes visit `i` to a surface,
     /// and the hit.
     fn visit(
         &mut self,
@@ -126,7 +126,7 @@ impl Resolver<'_> {
         Some((length, hit))
     }
 
-    /// Returns the direction in which the central ray leaves the surface of visit `i`.
+    /// The direction in which the central ray leaves the surface of visit `i`.
     fn onwards(
         &mut self,
         i: usize,
@@ -189,7 +189,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame of the light that leaves a hit along the direction `d`. The arriving frame is
+/// The frame of the light that leaves a hit along the direction `d`. The arriving frame is
 /// reflected at the surface with X reversed, and is then rotated by the smallest angle that turns D
 /// to `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D) (Durand
 /// et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light that leaves in the plane of
@@ -225,7 +225,7 @@ fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
 }
 
 impl Things<'_> {
-    /// Returns all reflecting objects, with their names.
+    /// All reflecting objects, with their names.
     fn objects(&self) -> Vec<(Object, &str)> {
         let surfaces = self.surfaces.iter().enumerate();
         let surfaces = surfaces.map(|(i, s)| (Object::Surface(i), s.name.as_str()));
@@ -271,7 +271,7 @@ impl Things<'_> {
         self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }
 
-    /// Returns the first hit of the axis of a frame with an object: the distance, the point, and
+    /// The first hit of the axis of a frame with an object: the distance, the point, and
     /// the normal on the side of the frame's origin.
     fn hit(&self, object: Object, frame: &Frame) -> Option<(f64, DVec3, DVec3)> {
         let found = match object {
@@ -313,7 +313,7 @@ impl Things<'_> {
         }
     }
 
-    /// Returns the distance along the axis of a frame to the first object, blocker or light that
+    /// The distance along the axis of a frame to the first object, blocker or light that
     /// the axis meets.
     fn clear(&self, frame: &Frame, light: &Light) -> f64 {
         let objects = self.objects();
@@ -341,7 +341,7 @@ impl Things<'_> {
 }
 
 impl MeshObject {
-    /// Returns the distance at which the axis of a frame first hits the mesh, and the normal at
+    /// The distance at which the axis of a frame first hits the mesh, and the normal at
     /// the hit: the triangle's normal, or the interpolated normal.
     pub(crate) fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
@@ -357,7 +357,7 @@ impl MeshObject {
         Some((t, self.normal(i, frame.origin + t * frame.d)))
     }
 
-    /// Returns the outward normal at a point of a triangle, on the side given by the triangle's
+    /// The outward normal at a point of a triangle, on the side given by the triangle's
     /// winding.
     pub(crate) fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let corners = &self.triangles[triangle];

@@ -19,7 +19,7 @@ use std::sync::Arc;
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
-    /// Returns the light from an environment. The axes are directions in the world of the scene
+    /// The light from an environment. The axes are directions in the world of the scene
     /// file; `light` is the frame at the light.
     pub(super) fn environment(
         &mut self,
@@ -104,7 +104,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns a picture that varies a BRDF over a surface.
+    /// A picture that varies a BRDF over a surface.
     pub(super) fn picture_pattern(&mut self, of: &str, file: &str, size: [f64; 2]) -> Pattern {
         let raster = self.picture(&format!("{of}.file"), file, &["exr", "png"], 1.0);
         let black = || LatLong::from_fn(1, 1, |_| 0.0).raster().clone();
@@ -114,7 +114,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the picture in a file, with values from 0 to `most`.
+    /// The picture in a file, with values from 0 to `most`.
     pub(super) fn picture(
         &mut self,
         of: &str,

@@ -67,7 +67,7 @@ impl Resolver<'_> {
         planes
     }
 
-    /// Returns the frame of a plane, in the frame at the light, and the longitude of the central
+    /// The frame of a plane, in the frame at the light, and the longitude of the central
     /// ray in the plane's frame.
     fn view(
         &mut self,
@@ -181,7 +181,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the object to which the position of a plane refers.
+    /// The object to which the position of a plane refers.
     fn stop<'a>(
         &mut self,
         of: &str,
@@ -226,7 +226,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// Returns the position on the path at a given distance, with the leg that contains it.
+    /// The position on the path at a given distance, with the leg that contains it.
     fn at_distance(
         &mut self,
         of: &str,

@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// Returns the rays of a file. `front` and `up` are the directions of the file's Z and Y axes
+    /// The rays of a file. `front` and `up` are the directions of the file's Z and Y axes
     /// in the world, and `light` is the frame at the light.
     pub(super) fn rays(
         &mut self,
@@ -29,7 +29,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the axes of the file, in the frame at the light.
+    /// The axes of the file, in the frame at the light.
     fn axes_of_rays(&mut self, [front, up]: [Option<[f64; 3]>; 2], light: &Frame) -> Frame {
         let axis = |given: Option<[f64; 3]>, default: DVec3| {
             given.map_or(default, |v| light.vector_to_local(DVec3::from(v)))
@@ -91,7 +91,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the rays that go forward. Each ray is given at the point where it crosses the plane of
+/// The rays that go forward. Each ray is given at the point where it crosses the plane of
 /// the light.
 fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight> {
     let mut rays = Vec::with_capacity(set.len());

@@ -13,7 +13,7 @@ use etendue_scenefile::{
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// Returns the reflectance of a surface; `None` if the surface sends each ray in one
+    /// The reflectance of a surface; `None` if the surface sends each ray in one
     /// direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
@@ -59,7 +59,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the sum of BRDFs; `None` if there are no terms or too many terms.
+    /// The sum of BRDFs; `None` if there are no terms or too many terms.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {
@@ -144,7 +144,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the grating that a file describes.
+/// The grating that a file describes.
 pub(super) fn grating_of(file: &GratingFile) -> Grating {
     Grating {
         axis: file.axis.index(),

@@ -8,7 +8,7 @@ use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
 impl Resolver<'_> {
-    /// Returns the rectangular surfaces.
+    /// The rectangular surfaces.
     pub(super) fn surfaces(&mut self, file: &SceneFile, frame: &Frame) -> Vec<Surface> {
         let surfaces = file.surfaces.iter().enumerate();
         surfaces
@@ -48,7 +48,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// Returns the frame of a surface that faces along a direction of the world.
+    /// The frame of a surface that faces along a direction of the world.
     fn facing(
         &mut self,
         of: &str,

@@ -33,12 +33,12 @@ pub(super) struct MeshPlacement<'a> {
 }
 
 impl MeshPlacement<'_> {
-    /// Returns the position of a vertex in the world of the scene file.
+    /// The position of a vertex in the world of the scene file.
     pub(super) fn world(&self, vertex: DVec3) -> DVec3 {
         self.center + vertex * self.scale
     }
 
-    /// Returns the index of a vertex as its mesh file counts it, from 1 in OBJ files and from 0 in
+    /// The index of a vertex as its mesh file counts it, from 1 in OBJ files and from 0 in
     /// PLY files and generated meshes.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
@@ -48,7 +48,7 @@ impl MeshPlacement<'_> {
         u64::from(vertex) + u64::from(extension.is_some_and(|e| e.eq_ignore_ascii_case("obj")))
     }
 
-    /// Returns the path of a field of the mesh.
+    /// The path of a field of the mesh.
     pub(super) fn field(&self, what: &str) -> String {
         match self.source {
             MeshSource::File(path) => format!("{}.mesh, {path:?}: {what}", self.of),
@@ -56,7 +56,7 @@ impl MeshPlacement<'_> {
         }
     }
 
-    /// Returns the description of a triangle in messages, by the numbers of its vertices.
+    /// The description of a triangle in messages, by the numbers of its vertices.
     pub(super) fn triangle(&self, corners: [u32; 3]) -> String {
         let [a, b, c] = corners.map(|i| self.number(i));
         format!("the triangle of vertices {a}, {b} and {c}")
@@ -125,14 +125,14 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the height of a triangle over its longest side, and twice its area.
+/// The height of a triangle over its longest side, and twice its area.
 fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     let twice = (b - a).cross(c - a).length();
     [twice / longest, twice]
 }
 
-/// Returns the part of a message that counts the faults after the first fault.
+/// The part of a message that counts the faults after the first fault.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),

@@ -144,7 +144,7 @@ pub enum BlockersFile {
 }
 
 impl BlockersFile {
-    /// Returns the name of the blockers.
+    /// The name of the blockers.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {

@@ -36,7 +36,7 @@ impl Color {
         *self == Self::Luminance
     }
 
-    /// Returns the name of the number.
+    /// The name of the number.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::ALL[self as usize].0
@@ -51,7 +51,7 @@ impl Color {
         }
     }
 
-    /// Returns the number of a colour.
+    /// The number of a colour.
     #[must_use]
     pub fn of(self, [red, green, blue]: [f64; 3]) -> f64 {
         match self {
@@ -74,7 +74,7 @@ pub enum ColorFile {
 }
 
 impl ColorFile {
-    /// Returns one number of the colour.
+    /// One number of the colour.
     #[must_use]
     pub fn number(self, color: Color) -> f64 {
         match self {

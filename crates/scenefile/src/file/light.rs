@@ -139,7 +139,7 @@ pub enum LightFile {
 }
 
 impl LightFile {
-    /// Returns the point at which the central ray leaves the light, in world coordinates.
+    /// The point at which the central ray leaves the light, in world coordinates.
     #[must_use]
     pub fn center(&self) -> [f64; 3] {
         match self {

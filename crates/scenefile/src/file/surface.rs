@@ -125,7 +125,7 @@ pub enum SurfaceFile {
 }
 
 impl SurfaceFile {
-    /// Returns the name of the surface.
+    /// The name of the surface.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {

@@ -78,7 +78,7 @@ impl FieldSpectrum {
         })
     }
 
-    /// Returns the shared frequencies of each line, up to and including Nyquist.
+    /// The shared frequencies of each line, up to and including Nyquist.
     fn shared(&self, slices: &Slices) -> Vec<Vec<SharedFrequency>> {
         let grid = &slices.grid;
         let mut lines = vec![(0, [0, 2])];
@@ -93,7 +93,9 @@ impl FieldSpectrum {
                         self.harmonic_at(a, &grid.rho, grid.rho.half + m),
                         self.harmonic_at(b, &grid.nu, n),
                     ];
+                    // The grid has no value between its harmonics.
                     let [Some(i), Some(j)] = along else { continue };
+                    // Of two conjugate values, only one is compared.
                     if !grid.is_independent(m, n) {
                         continue;
                     }

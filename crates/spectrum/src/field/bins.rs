@@ -39,7 +39,7 @@ struct Angular {
 }
 
 impl RadialBins {
-    /// Returns the bins over the frequencies of `grid`.
+    /// The bins over the frequencies of `grid`.
     #[must_use]
     pub fn new(grid: &FieldGrid) -> Self {
         let [nx, ny, nu, nv] = grid.cells;
@@ -60,6 +60,7 @@ impl RadialBins {
                 ring([2, 3], index).map(|ring| Angular {
                     index,
                     ring,
+                    // The field is real, so each frequency with v > 0 also stands for its conjugate.
                     weight: if index[1] == 0 { 1 } else { 2 },
                 })
             })
@@ -78,7 +79,7 @@ impl RadialBins {
         }
     }
 
-    /// Returns the indices of the frequencies Ωx and Ωy in a ring.
+    /// The indices of the frequencies Ωx and Ωy in a ring.
     pub(super) fn of_ring(&self, ring: usize) -> impl Iterator<Item = [usize; 2]> {
         let ny = self.grid.cells[1];
         let all = self.xy.iter().enumerate();
@@ -86,14 +87,14 @@ impl RadialBins {
         own.map(move |(i, _)| [i / ny, i % ny])
     }
 
-    /// Returns the indices of Ωu and Ωv ≥ 0 with their rings, and the number of frequencies that
+    /// The indices of Ωu and Ωv ≥ 0 with their rings, and the number of frequencies that
     /// each pair represents.
     pub(super) fn angular(&self) -> impl Iterator<Item = ([usize; 2], usize, f64)> {
         let all = self.uv.iter();
         all.map(|angular| (angular.index, angular.ring, angular.weight as f64))
     }
 
-    /// Returns the mean over each bin for numbers that are even in Ω, such as powers. `of` returns
+    /// The mean over each bin for numbers that are even in Ω, such as powers. `of` returns
     /// these numbers for the indices [x, y, u, v] of a frequency.
     ///
     /// The numbers are summed for each Ωx, and these sums are added in order, so the result is
@@ -128,7 +129,7 @@ impl RadialBins {
         means.map(|sum| sum / self.counts.mapv(|count| count as f64))
     }
 
-    /// Returns the mean of |ℓ̂|² over each bin, including noise.
+    /// The mean of |ℓ̂|² over each bin, including noise.
     #[must_use]
     pub fn power(&self, spectrum: &FieldSpectrum) -> Array2<f64> {
         let [power] = self.means(|index| [spectrum.values[index].norm_sqr()]);
@@ -136,7 +137,7 @@ impl RadialBins {
     }
 }
 
-/// Returns the edges of the rings over the axes `a` and `b`.
+/// The edges of the rings over the axes `a` and `b`.
 fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     let width = grid.spacing(a).max(grid.spacing(b));
     let last = grid.nyquist(a).min(grid.nyquist(b));
@@ -146,7 +147,7 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// Returns |F|² of a prediction as a full radial spectrum, [|Ωxy|, |Ωuv|]. The value of each bin of
+/// |F|² of a prediction as a full radial spectrum, [|Ωxy|, |Ωuv|]. The value of each bin of
 /// [`RadialBins`] is the mean over those frequencies of `grid` that are in the bin.
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv), and is called only for Ωv ≥ 0.

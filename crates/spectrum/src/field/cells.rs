@@ -18,7 +18,7 @@ pub struct FieldTransform {
 }
 
 impl FieldTransform {
-    /// Returns the plan for `grid`.
+    /// The plan for `grid`.
     #[must_use]
     pub fn new(grid: FieldGrid, assignment: Assignment) -> Self {
         let factor = |axis: usize, i: usize| {
@@ -37,7 +37,7 @@ impl FieldTransform {
         }
     }
 
-    /// Returns an empty grid.
+    /// An empty grid.
     #[must_use]
     pub fn cells(&self) -> FieldCells {
         FieldCells {
@@ -48,7 +48,7 @@ impl FieldTransform {
         }
     }
 
-    /// Returns the spectrum of the cells, and reuses their memory.
+    /// The spectrum of the cells, and reuses their memory.
     ///
     /// # Panics
     ///
@@ -144,7 +144,7 @@ impl FieldCells {
             .for_each(|(a, b)| *a += b);
     }
 
-    /// Returns the light field at the cells' centres: Σ w · share / (volume of a cell), [x, y, u,
+    /// The light field at the cells' centres: Σ w · share / (volume of a cell), [x, y, u,
     /// v], all ascending.
     #[must_use]
     pub fn field(&self) -> Array4<f64> {

@@ -37,7 +37,7 @@ impl PowerMoments {
         Self { power, second }
     }
 
-    /// Returns ∫ P Ω Ωᵀ/∫ P. Returns `None` if ∫ P is zero, or if noise makes ∫ P negative.
+    /// ∫ P Ω Ωᵀ/∫ P. Returns `None` if ∫ P is zero, or if noise makes ∫ P negative.
     #[must_use]
     pub fn covariance(&self) -> Option<FrequencyMatrix> {
         let of = |row: [f64; 4]| row.map(|sum| sum / self.power);
@@ -45,7 +45,7 @@ impl PowerMoments {
     }
 }
 
-/// Returns the index pairs (i, j) with i ≤ j, in ascending order.
+/// The index pairs (i, j) with i ≤ j, in ascending order.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
@@ -62,7 +62,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Returns the band of the frequencies of `slices`.
+    /// The band of the frequencies of `slices`.
     #[must_use]
     pub fn new(grid: FieldGrid, slices: &SliceGrid) -> Self {
         let [rho, nu] = [slices.rho.max(), slices.nu.max()];
@@ -72,7 +72,7 @@ impl Moments {
         }
     }
 
-    /// Returns the band whose largest frequencies are half of the largest frequencies of this band.
+    /// The band whose largest frequencies are half of the largest frequencies of this band.
     fn halved(&self) -> Self {
         Self {
             grid: self.grid,
@@ -80,7 +80,7 @@ impl Moments {
         }
     }
 
-    /// Returns the moments of a power that is even in Ω. `power` is called with the indices of a
+    /// The moments of a power that is even in Ω. `power` is called with the indices of a
     /// frequency in a transform, and only for Ωv ≥ 0.
     ///
     /// The power is summed for each Ωx, and these sums are added in order, so the result is
@@ -110,13 +110,13 @@ impl Moments {
         PowerMoments::new(all)
     }
 
-    /// Returns the moments of a power that is a function of frequencies.
+    /// The moments of a power that is a function of frequencies.
     #[must_use]
     pub fn at_frequencies(&self, power: impl Fn([f64; 4]) -> f64 + Sync) -> PowerMoments {
         self.of(|index| power(self.grid.frequency(index)))
     }
 
-    /// Returns the indices and the frequencies of the band along an axis.
+    /// The indices and the frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
         // The tolerance covers rounding errors if the largest frequency is a multiple of the
@@ -225,13 +225,13 @@ impl FieldCovariance {
         }
     }
 
-    /// Returns the covariance; `None` if the power is not above the noise.
+    /// The covariance; `None` if the power is not above the noise.
     #[must_use]
     pub fn estimate(&self) -> Option<MatrixEstimate> {
         self.estimate_of(|matrix| Some(*matrix))
     }
 
-    /// Returns the growth of each variance, which is its value over the entire band divided by its
+    /// The growth of each variance, which is its value over the entire band divided by its
     /// value over half of the band. The growth is 1 if half of the band contains the spectrum, and
     /// about 2 if the field has an edge. The growth is larger if replicas lie beyond half of the
     /// band. The spectrum of a field with an edge has no second moment. Returns `None` if the power
@@ -242,7 +242,7 @@ impl FieldCovariance {
         Some([0, 1, 2, 3].map(|i: usize| all[i][i] / half[i][i]))
     }
 
-    /// Returns the estimate of a matrix that is a function of the covariance, such as its image
+    /// The estimate of a matrix that is a function of the covariance, such as its image
     /// under a map. Returns `None` if this matrix does not exist, either for all groups together
     /// or if any one group is left out.
     pub fn estimate_of(

@@ -67,7 +67,7 @@ impl GroupPower {
     }
 }
 
-/// Returns the full radial spectrum from the contributions of all groups.
+/// The full radial spectrum from the contributions of all groups.
 pub(crate) fn full_radial(bins: &RadialBins, groups: &[&GroupPower]) -> FullRadial {
     let shape = bins.counts.raw_dim();
     let sum = |of: fn(&GroupPower) -> &Array2<f64>| {

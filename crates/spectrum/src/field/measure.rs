@@ -37,7 +37,7 @@ pub struct FieldOptions {
 }
 
 impl Default for FieldOptions {
-    /// Returns the default options: triangular shaped clouds, 16 groups that are not kept, no
+    /// The default options: triangular shaped clouds, 16 groups that are not kept, no
     /// spectra of groups, and no covariance.
     fn default() -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Default for FieldOptions {
 const MARGIN: f64 = 1.5;
 
 impl FieldOptions {
-    /// Returns the grid on which a plane is measured.
+    /// The grid on which a plane is measured.
     #[must_use]
     pub fn grid(&self, plane: &VirtualPlane) -> FieldGrid {
         let mut slices = plane.grid;
@@ -66,7 +66,7 @@ impl FieldOptions {
         FieldGrid::new(&plane.window, &slices)
     }
 
-    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads. The field,
+    /// The number of bytes that [`measure_field`] needs on `threads` threads. The field,
     /// its spectrum, and the grids of all groups that are kept or being measured need these bytes.
     /// The caller should compare this number with the available memory before the measurement.
     #[must_use]
@@ -135,6 +135,7 @@ pub fn measure_field(
     options: &FieldOptions,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<FieldMeasurement, TooFewBatches> {
+    // A batch without photons says nothing about noise.
     let batches: Vec<u32> = batches.filter(|b| source.emitted(*b) > 0).collect();
     if batches.len() < MIN_GROUPS {
         return Err(TooFewBatches {
@@ -158,6 +159,8 @@ pub fn measure_field(
     let spectrum = run.transform.spectrum(sum);
     let bins = RadialBins::new(&grid);
     let moments = options.covariance.then(|| Moments::new(grid, &plane.grid));
+    // Powers of groups need the spectrum of all groups, so the photons of groups whose grids are not
+    // kept are traced again.
     let mut found = run.powers(&bins, moments.as_ref(), &spectrum, kept);
     let groups = found.iter_mut().filter_map(|found| found.spectrum.take());
     let groups = groups.collect();
@@ -195,7 +198,7 @@ struct GroupContext<'a> {
 }
 
 impl GroupContext<'_> {
-    /// Returns the sum of the grids of all groups, and the grids of the groups if they are kept.
+    /// The sum of the grids of all groups, and the grids of the groups if they are kept.
     fn sum(&self, keep: bool) -> (FieldCells, PlaneTally, Vec<FieldCells>) {
         let mut sum = self.transform.cells();
         let mut tally = PlaneTally::default();
@@ -216,7 +219,7 @@ impl GroupContext<'_> {
         (sum, tally, kept)
     }
 
-    /// Returns the contribution of each group to the power, where `all` is the spectrum of the
+    /// The contribution of each group to the power, where `all` is the spectrum of the
     /// sum of all groups.
     fn powers(
         &self,
@@ -252,7 +255,7 @@ impl GroupContext<'_> {
         starts.map(move |start| start..(start + threads).min(self.groups))
     }
 
-    /// Returns the numbers of the batches of a group.
+    /// The numbers of the batches of a group.
     fn members(&self, group: usize) -> impl ExactSizeIterator<Item = u32> {
         self.batches
             .iter()

@@ -6,7 +6,7 @@ use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
 impl RadialBins {
-    /// Returns the mean of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j]. The bins
+    /// The mean of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j]. The bins
     /// are in the row-major order of [|Ωxy|, |Ωuv|].
     ///
     /// All pairs of spectra are computed together, so that each spectrum is read only once. Each
@@ -27,7 +27,7 @@ impl RadialBins {
         products.expect("there is a product for each bin and pair")
     }
 
-    /// Returns the products of all frequencies in a ring of (Ωx, Ωy), [|Ωuv|, i, j].
+    /// The products of all frequencies in a ring of (Ωx, Ωy), [|Ωuv|, i, j].
     fn ring_products(&self, ring: usize, spectra: &[&FieldSpectrum]) -> Vec<f64> {
         let n = spectra.len();
         let columns = self.counts.ncols();

@@ -22,7 +22,7 @@ pub struct FieldSpectrum {
 }
 
 impl FieldSpectrum {
-    /// Returns the value at the given multiples of the frequency spacings; each multiple is at
+    /// The value at the given multiples of the frequency spacings; each multiple is at
     /// most n/2 in modulus.
     ///
     /// At a Nyquist frequency, +n/2 and −n/2 have the same value, which is not an estimate of the
@@ -58,7 +58,7 @@ impl FieldSpectrum {
         self.values[[0; 4]].re
     }
 
-    /// Returns a bound on the difference between [`at`](Self::at) and the exact sum over the same
+    /// A bound on the difference between [`at`](Self::at) and the exact sum over the same
     /// rays, if no weight is negative. The bound is Σw (Π(1 + ε_d) − 1), where ε_d is the largest
     /// alias of a ray along axis d.
     ///

@@ -13,12 +13,12 @@
 use etendue_field::{Assignment, sinc};
 use std::f64::consts::PI;
 
-/// Returns the transform of the spline, sinc^p(f).
+/// The transform of the spline, sinc^p(f).
 pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
-/// Returns the cells to which a ray contributes along one axis, and the ray's share in each cell.
+/// The cells to which a ray contributes along one axis, and the ray's share in each cell.
 /// The ray is at `t` ≥ 0, in units of cells, and cells have numbers in the period 0..`n`. The
 /// shares add up to 1.
 #[inline]
@@ -45,7 +45,7 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
     (cells, std::array::from_fn(|i| shares[i]))
 }
 
-/// Returns the maximum of |ε| at the frequency `f`, over all positions of a ray.
+/// The maximum of |ε| at the frequency `f`, over all positions of a ray.
 ///
 /// The value is exact for orders 1 and 2. For order 3, the value is the sum of the moduli of the
 /// terms, and this sum exceeds the actual maximum by up to a fifth.
@@ -72,7 +72,7 @@ pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     }
 }
 
-/// Returns the mean of |ε|² over all positions of a ray, Σ_(n≠0) (f/(f + n))^2p. Jing (2005), Eq.
+/// The mean of |ε|² over all positions of a ray, Σ_(n≠0) (f/(f + n))^2p. Jing (2005), Eq.
 /// 20, gives closed forms of these sums.
 pub(crate) fn mean_square_alias(assignment: Assignment, f: f64) -> f64 {
     let s = libm::sin(PI * f).powi(2);

@@ -16,7 +16,7 @@ use glam::DVec3;
 pub struct Random(pub u64);
 
 impl Random {
-    /// Returns a number uniform in [0, 1).
+    /// A number uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -25,12 +25,12 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Returns a number uniform in (−half, half).
+    /// A number uniform in (−half, half).
     pub fn within(&mut self, half: f64) -> f64 {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// Returns a random crossing, up to `reach` half-widths of `window` from the window's centre,
+    /// A random crossing, up to `reach` half-widths of `window` from the window's centre,
     /// with a weight in [0, 2).
     pub fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
@@ -65,7 +65,7 @@ pub fn boxed() -> Window {
     }
 }
 
-/// Returns a grid of `azimuths` slices. Each slice has `half` values of ρ and of ν on either side
+/// A grid of `azimuths` slices. Each slice has `half` values of ρ and of ν on either side
 /// of zero, and `fineness` samples per 1/(2 half-width).
 pub fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {

@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 const MAX_NAMES: usize = 10;
 
 impl Results {
-    /// Returns the files of the earlier result, as listed in its index.
+    /// The files of the earlier result, as listed in its index.
     pub(super) fn earlier(&self) -> BTreeMap<String, String> {
         listed(&self.folder.join(self.plan.index)).unwrap_or_default()
     }
 
-    /// Returns the path of a file of the folder. Returns `None` if the path leads out of the
+    /// The path of a file of the folder. Returns `None` if the path leads out of the
     /// folder, through `..` or through a link.
     pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
         inside(&self.folder, name)

@@ -167,7 +167,7 @@ impl Results {
         moved.file(from, to)
     }
 
-    /// Returns the path to which an earlier file is moved before it is removed.
+    /// The path to which an earlier file is moved before it is removed.
     fn aside(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("old").join(name)
     }

@@ -28,7 +28,7 @@ pub struct BandwidthRow {
     pub warnings: Vec<String>,
 }
 
-/// Returns a row for each plane to which the criteria of Durand et al. 2005, Eqs. 20 and 21, apply.
+/// A row for each plane to which the criteria of Durand et al. 2005, Eqs. 20 and 21, apply.
 /// If `measuring` is a method, the scene is measured by this method.
 pub fn bandwidths(
     scene: &Scene,
@@ -80,7 +80,7 @@ pub fn bandwidths(
     planes.into_iter().map(row).collect()
 }
 
-/// Returns the effects that the criteria do not cover.
+/// The effects that the criteria do not cover.
 fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
     let Some(view) = applicability.theory.path_of(PathKind::Scattered) else {
         return Vec::new();

@@ -89,7 +89,7 @@ pub(crate) fn drawn(
     quantities.into_iter().map(figure).collect()
 }
 
-/// Returns a panel with the measured and predicted numbers of a plane over the swept field.
+/// A panel with the measured and predicted numbers of a plane over the swept field.
 fn panel(
     plane: &str,
     others: &SweepPoint,
@@ -139,7 +139,7 @@ fn name(plane: &serde_json::Value) -> &str {
     plane["name"].as_str().unwrap_or_default()
 }
 
-/// Returns the values that distinguish one panel from another.
+/// The values that distinguish one panel from another.
 fn others(at: &PointResult, together: bool) -> SweepPoint {
     if together {
         SweepPoint::new()

@@ -54,19 +54,19 @@ impl SweepPoints {
         })
     }
 
-    /// Returns the name of the scene.
+    /// The name of the scene.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.base.name
     }
 
-    /// Returns the scene at each point.
+    /// The scene at each point.
     #[must_use]
     pub fn scenes(&self) -> &[Scene] {
         &self.scenes
     }
 
-    /// Returns the warnings about the scenes. Each warning is shown once, with the first point
+    /// The warnings about the scenes. Each warning is shown once, with the first point
     /// that it concerns.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
@@ -98,7 +98,7 @@ impl SweepPoints {
     }
 }
 
-/// Returns the seed of a point. The seed is derived from the point's scene and the seed of the
+/// The seed of a point. The seed is derived from the point's scene and the seed of the
 /// sweep, and does not depend on the other points. The seed is so small that every reader of JSON
 /// represents it exactly.
 fn seed_of(scene: &Scene) -> u64 {
@@ -163,7 +163,7 @@ fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     (set, sweeps)
 }
 
-/// Returns the scene with some further fields set to numbers; `options` overrides fields at all
+/// The scene with some further fields set to numbers; `options` overrides fields at all
 /// points.
 pub fn scene_at(
     source: &SceneSource,

@@ -26,7 +26,7 @@ pub struct SweepRequest {
 }
 
 impl SweepRequest {
-    /// Returns the request for a sweep by photons over all combinations of the fields' values.
+    /// The request for a sweep by photons over all combinations of the fields' values.
     #[must_use]
     pub fn new(scene: SceneSource, set: Vec<Setting>) -> Self {
         Self {

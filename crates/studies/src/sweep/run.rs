@@ -104,7 +104,7 @@ fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
     }
 }
 
-/// Returns the result of each point, from this command or an earlier one.
+/// The result of each point, from this command or an earlier one.
 fn run_all(
     request: &SweepRequest,
     folder: &Path,
@@ -174,7 +174,7 @@ fn run_all(
         .collect()
 }
 
-/// Returns the folders of the points. The function checks that these folders are inside the folder
+/// The folders of the points. The function checks that these folders are inside the folder
 /// of the sweep.
 fn folders(
     request: &SweepRequest,
@@ -188,7 +188,7 @@ fn folders(
     all.scenes.iter().zip(&all.points).map(name).collect()
 }
 
-/// Returns the name of a point. It consists of the values of the point, and of a hash of its scene
+/// The name of a point. It consists of the values of the point, and of a hash of its scene
 /// and method.
 fn name_of(scene: &Scene, point: &SweepPoint, request: &SweepRequest) -> String {
     /// Maximum length of the values in a name.
@@ -269,7 +269,7 @@ fn finish(
     })
 }
 
-/// Returns the reasons why planes of a point are undecided.
+/// The reasons why planes of a point are undecided.
 fn undecided(at: &PointResult) -> Vec<String> {
     let reasons = at.planes().filter_map(|plane| {
         let [name, reason] = ["name", "undecided"].map(|key| plane[key].as_str());
@@ -278,7 +278,7 @@ fn undecided(at: &PointResult) -> Vec<String> {
     reasons.collect()
 }
 
-/// Returns the table for the terminal: a row for each plane at each point.
+/// The table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
         (BANDWIDTHS[0], "95 % bandwidth in ρ [cycles/m]"),

@@ -35,7 +35,7 @@ impl PointResult {
 pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"];
 pub(crate) const SLOPE: &str = "slope";
 
-/// Returns the numbers of a plane: the numbers of its whole spectrum, and each parameter.
+/// The numbers of a plane: the numbers of its whole spectrum, and each parameter.
 pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
         quantity: quantity.to_owned(),
@@ -61,7 +61,7 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     numbers
 }
 
-/// Returns the table as CSV with all digits; cells without a number are empty.
+/// The table as CSV with all digits; cells without a number are empty.
 pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
     // Seeds are texts, because a double cannot represent every seed exactly.
     let names = [

@@ -34,7 +34,7 @@ pub fn setting(text: &str) -> Result<Setting, String> {
     setting_of(path, values, ArgumentStyle::Command)
 }
 
-/// Returns the setting of a field to one or several values. `values` has the notation that `--set`
+/// The setting of a field to one or several values. `values` has the notation that `--set`
 /// of a sweep accepts after `PATH=`.
 pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<Setting, String> {
     let (path, values) = (dotted(path.trim()), values.trim().to_owned());
@@ -78,7 +78,7 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
 }
 
 impl Sweep {
-    /// Returns the sweep of a field, if its values are finite and not too many. The error message
+    /// The sweep of a field, if its values are finite and not too many. The error message
     /// uses the notation of the Python package.
     pub fn new(path: String, values: Vec<f64>) -> Result<Self, String> {
         let refused = |why: &str| {
@@ -100,7 +100,7 @@ impl Sweep {
     }
 }
 
-/// Returns the values of a range or a list.
+/// The values of a range or a list.
 fn values_of(text: &str) -> Result<Vec<f64>, String> {
     match text.split_once("..") {
         None => text.split(',').map(number).collect(),
@@ -166,7 +166,7 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     tidy(value).parse().unwrap_or(value)
 }
 
-/// Returns the values at all points. Fields vary together, or in all combinations; in the
+/// The values at all points. Fields vary together, or in all combinations; in the
 /// combinations, the last field varies fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
@@ -201,7 +201,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// Returns a message, and the name of the point that it concerns.
+/// A message, and the name of the point that it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
@@ -210,13 +210,13 @@ pub fn message_at(point: &SweepPoint, text: String) -> String {
     }
 }
 
-/// Returns a description of a point.
+/// A description of a point.
 pub fn shown(point: &SweepPoint) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns a short end of a path that still identifies the field: `Ggx` for
+/// A short end of a path that still identifies the field: `Ggx` for
 /// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());

@@ -26,7 +26,7 @@ const LEVELS: usize = FINEST + 1;
 /// The minimum number of groups for a jackknife.
 const MIN_GROUPS: usize = 3;
 
-/// Returns all bands up to a level, in row-major order of (x, u, y, v).
+/// All bands up to a level, in row-major order of (x, u, y, v).
 pub(crate) fn bands(finest: usize) -> impl Iterator<Item = [usize; 4]> {
     let n = finest + 1;
     (0..n.pow(4)).map(move |i| indices(i, n))
@@ -77,7 +77,7 @@ pub fn dyadic_power(
     Ok(estimate(&shares, &products))
 }
 
-/// Returns the power in bands from the products of each group with all others.
+/// The power in bands from the products of each group with all others.
 fn estimate(shares: &GroupShares, products: &[Vec<f64>]) -> PowerEstimate {
     let all: Vec<[usize; 4]> = bands(FINEST).collect();
     let of_band = |band: usize| products.iter().map(|group| group[band]).collect();
@@ -95,7 +95,7 @@ fn estimate(shares: &GroupShares, products: &[Vec<f64>]) -> PowerEstimate {
     }
 }
 
-/// Returns the means of f over the blocks of the finest level, in row-major order of (x, u, y, v),
+/// The means of f over the blocks of the finest level, in row-major order of (x, u, y, v),
 /// times the share of these batches in `all` batches.
 fn block_means(
     plane: &VirtualPlane,
@@ -128,7 +128,7 @@ fn block_means(
     cells
 }
 
-/// Returns the mean products of the means of two fields over the blocks of each level, (x, u, y, v).
+/// The mean products of the means of two fields over the blocks of each level, (x, u, y, v).
 fn mean_products(fields: [Vec<f64>; 2]) -> Vec<f64> {
     let mut products = vec![0.0; LEVELS.pow(4)];
     coarser(fields, [FINEST; 4], 0, &mut products);
@@ -159,7 +159,7 @@ fn coarser(fields: [Vec<f64>; 2], at: [usize; 4], first: usize, products: &mut [
     }
 }
 
-/// Returns the differences along each axis, which are the values in bands.
+/// The differences along each axis, which are the values in bands.
 fn in_bands(mut values: Vec<f64>) -> Vec<f64> {
     for stride in (0..4).map(|axis| LEVELS.pow(axis)) {
         for i in (0..values.len()).rev() {

@@ -29,7 +29,7 @@ enum AxisFactor {
 }
 
 impl AxisFactor {
-    /// Returns the factor at a coordinate of a frequency.
+    /// The factor at a coordinate of a frequency.
     fn at(self, m: f64) -> f64 {
         let cell = |n: f64| sinc(m / n) * sinc(m / n);
         match self {
@@ -42,7 +42,7 @@ impl AxisFactor {
         }
     }
 
-    /// Returns the factor in a dyadic band of level s along an axis, where frequencies are replaced
+    /// The factor in a dyadic band of level s along an axis, where frequencies are replaced
     /// by halvings: cells of length 2^−l average levels s > l to 0, and keep coarser levels. Returns
     /// `None` if the number of cells is no power of two.
     fn in_band(self, level: usize) -> Option<f64> {
@@ -73,7 +73,7 @@ pub struct ExpectedPower {
 }
 
 impl ExpectedPower {
-    /// Returns the expected power of `count` points. Returns `None` if the sampler has no sets of
+    /// The expected power of `count` points. Returns `None` if the sampler has no sets of
     /// `count` points, or if its points come from a file.
     #[must_use]
     pub fn new(sampler: &Sampler, count: usize) -> Option<Self> {
@@ -101,7 +101,7 @@ impl ExpectedPower {
         }
     }
 
-    /// Returns the expected power of a net of 2^k points with Owen's scrambling.
+    /// The expected power of a net of 2^k points with Owen's scrambling.
     ///
     /// Scrambling keeps the number of leading digits that two points share along each axis. For the
     /// points i and j, these are the leading zeros of the points' exclusive or, which is again a
@@ -130,7 +130,7 @@ impl ExpectedPower {
         }
     }
 
-    /// Returns the expected power of two jittered sets of n² points each.
+    /// The expected power of two jittered sets of n² points each.
     ///
     /// If each set has the power p_m, two different points of it have the product t = (N p_m −
     /// 1)/(N − 1), which is 1 at zero and −Π sinc²(m/n)/(N − 1) elsewhere. The points are paired at
@@ -153,7 +153,7 @@ impl ExpectedPower {
         Self { factors, terms }
     }
 
-    /// Returns E|S_m|² at a frequency m ≠ 0 with the coordinates (x, u, y, v).
+    /// E|S_m|² at a frequency m ≠ 0 with the coordinates (x, u, y, v).
     #[must_use]
     pub fn at(&self, m: [i64; 4]) -> f64 {
         let factor =
@@ -164,13 +164,13 @@ impl ExpectedPower {
         self.terms.iter().map(term).sum()
     }
 
-    /// Returns E|S_m|² at 0 ≤ m_k ≤ `max` along each axis, in row-major order.
+    /// E|S_m|² at 0 ≤ m_k ≤ `max` along each axis, in row-major order.
     pub(crate) fn grid(&self, max: usize) -> Vec<f64> {
         let table = |factor: &AxisFactor| (0..=max).map(|m| factor.at(m as f64)).collect();
         self.sums(&self.factors.iter().map(table).collect::<Vec<_>>())
     }
 
-    /// Returns what replaces E|S_m|² in the dyadic bands 0 ≤ s_k ≤ `finest` along each axis, for sets
+    /// What replaces E|S_m|² in the dyadic bands 0 ≤ s_k ≤ `finest` along each axis, for sets
     /// that are not shifted, in row-major order. The variance of a mean is the sum over bands of
     /// their power times this number (Owen 1997, for nets: N times the number is the gain
     /// coefficient). Returns `None` if the cells of the sampler are no dyadic blocks.
@@ -180,7 +180,7 @@ impl ExpectedPower {
         Some(self.sums(&tables?))
     }
 
-    /// Returns the means of E|S_m|² over the cells of `octaves` octaves of a dyadic tail, each as
+    /// The means of E|S_m|² over the cells of `octaves` octaves of a dyadic tail, each as
     /// [`grid`](Self::grid) does. In octave k ≥ 1, the cell of the coordinate m ≠ 0 has the 2^k
     /// whole numbers around 2^k m, and the cell of 0 is 0 itself.
     pub(crate) fn octaves(&self, max: usize, octaves: u32) -> Vec<Vec<f64>> {
@@ -209,7 +209,7 @@ impl ExpectedPower {
         (1..=octaves).map(octave).collect()
     }
 
-    /// Returns Σ_t w_t Π_k a_tk, where `tables` has the values of each factor.
+    /// Σ_t w_t Π_k a_tk, where `tables` has the values of each factor.
     fn sums(&self, tables: &[Vec<f64>]) -> Vec<f64> {
         let n = tables.first().map_or(0, Vec::len);
         let rows = (0..n * n).into_par_iter().flat_map_iter(|row| {

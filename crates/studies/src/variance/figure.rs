@@ -49,12 +49,12 @@ pub fn drawn(scene: &str, found: &PlaneVariance) -> Result<Figure, Failure> {
     figure.map_err(Failure::cannot_run)
 }
 
-/// Returns the variances of independent points times N.
+/// The variances of independent points times N.
 fn of_independent(found: &PlaneVariance) -> f64 {
     found.moments.variance.value + found.moments.noise.value
 }
 
-/// Returns a panel of variances against N for each sampler.
+/// A panel of variances against N for each sampler.
 fn variances(place: &str, found: &PlaneVariance, samplers: &[&SamplerReport]) -> Curves {
     let has_unshifted = samplers.iter().any(|s| s.unshifted.is_some());
     let note = if has_unshifted {
@@ -107,7 +107,7 @@ fn panel(sampler: &SamplerReport, independent: f64, has_unshifted: bool) -> Curv
     }
 }
 
-/// Returns the values of a curve with their errors, against N.
+/// The values of a curve with their errors, against N.
 fn points(curve: &VarianceCurve, value: impl Fn(&CountReport) -> [f64; 2]) -> Vec<[f64; 3]> {
     let counts = curve.counts.iter();
     let point = |count| {
@@ -117,7 +117,7 @@ fn points(curve: &VarianceCurve, value: impl Fn(&CountReport) -> [f64; 2]) -> Ve
     counts.map(point).collect()
 }
 
-/// Returns the predicted and the found variances. Predictions that are undecided are left out.
+/// The predicted and the found variances. Predictions that are undecided are left out.
 fn of_sets(curve: &VarianceCurve, style: &SetStyle) -> Vec<Curve> {
     let mut curves = Vec::new();
     let (kind, name) = style.predicted;
@@ -131,7 +131,7 @@ fn of_sets(curve: &VarianceCurve, style: &SetStyle) -> Vec<Curve> {
     curves
 }
 
-/// Returns a chart of N Var/σ² of all samplers, each with its only number of points.
+/// A chart of N Var/σ² of all samplers, each with its only number of points.
 fn gains(place: &str, found: &PlaneVariance, samplers: &[&SamplerReport]) -> Chart {
     let variance = found.moments.variance.value;
     let independent = of_independent(found) / variance;

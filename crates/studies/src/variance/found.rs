@@ -26,7 +26,7 @@ pub struct SetFamily {
 }
 
 impl SetFamily {
-    /// Returns the mean of the radiance over each set of `count` points; `None` if the sampler has
+    /// The mean of the radiance over each set of `count` points; `None` if the sampler has
     /// no such sets. `progress` is called with 1 after each set.
     #[must_use]
     pub fn means(
@@ -50,7 +50,7 @@ impl SetFamily {
     }
 }
 
-/// Returns the variance of independent numbers, and its standard error from their fourth moment.
+/// The variance of independent numbers, and its standard error from their fourth moment.
 #[must_use]
 pub fn variance_of(values: &[f64]) -> Uncertain {
     let n = values.len() as f64;

@@ -30,7 +30,7 @@ struct RadianceFromPoints<'a> {
 }
 
 impl LightPoints {
-    /// Returns the rays to the only plane of a scene, which has a Box window. `max` is the largest
+    /// The rays to the only plane of a scene, which has a Box window. `max` is the largest
     /// measured frequency.
     ///
     /// # Errors
@@ -73,14 +73,14 @@ impl LightPoints {
         Ok(points)
     }
 
-    /// Returns photons that have points on the light in the places of slopes.
+    /// Photons that have points on the light in the places of slopes.
     #[must_use]
     pub fn photons<'a>(&self, source: Box<dyn PhotonSource + 'a>) -> Box<dyn PhotonSource + 'a> {
         let points = self.clone();
         mapped_photons(source, move |crossing| points.crossing(crossing))
     }
 
-    /// Returns the radiance at points of the window, which has points on the light in the places of
+    /// The radiance at points of the window, which has points on the light in the places of
     /// slopes.
     #[must_use]
     pub fn radiance<'a>(&self, of_slopes: WindowRadiance<'a>) -> WindowRadiance<'a> {
@@ -91,7 +91,7 @@ impl LightPoints {
         WindowRadiance::of(self.plane.window, rays)
     }
 
-    /// Returns a photon with a point on the light. Its weight grows with ds dt = d² du dv, so the
+    /// A photon with a point on the light. Its weight grows with ds dt = d² du dv, so the
     /// radiance of the light stays the same.
     pub(crate) fn crossing(&self, Crossing { ray, weight }: &Crossing) -> Crossing {
         let d = self.seen.distance;
@@ -105,7 +105,7 @@ impl LightPoints {
         }
     }
 
-    /// Returns the ray from a point on the light.
+    /// The ray from a point on the light.
     pub(crate) fn ray(&self, point: &TwoPlane) -> TwoPlane {
         let d = self.seen.distance;
         TwoPlane {

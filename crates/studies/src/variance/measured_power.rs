@@ -31,7 +31,7 @@ pub struct MeasuredPower {
     pub mean: Uncertain,
 }
 
-/// Returns a scene that sees one plane, [with a Box window](box_window), by photons that suit
+/// A scene that sees one plane, [with a Box window](box_window), by photons that suit
 /// [grids](Scene::on_grids).
 #[must_use]
 pub fn with_box_window(scene: &Scene, index: usize, max: usize) -> Scene {
@@ -42,7 +42,7 @@ pub fn with_box_window(scene: &Scene, index: usize, max: usize) -> Scene {
     scene
 }
 
-/// Returns a plane whose windows are replaced by Box windows of the same half-widths. The grid of
+/// A plane whose windows are replaced by Box windows of the same half-widths. The grid of
 /// this plane reaches twice `max` cycles per window.
 #[must_use]
 pub fn box_window(plane: &VirtualPlane, max: usize) -> VirtualPlane {
@@ -61,7 +61,7 @@ pub fn box_window(plane: &VirtualPlane, max: usize) -> VirtualPlane {
     plane
 }
 
-/// Returns the options with which the grid of a plane is measured.
+/// The options with which the grid of a plane is measured.
 #[must_use]
 pub fn field_options() -> FieldOptions {
     FieldOptions {
@@ -89,7 +89,7 @@ impl MeasuredPower {
         Ok(Self::of_groups(&field.groups, plane, max))
     }
 
-    /// Returns the power from the spectra of independent groups of photons.
+    /// The power from the spectra of independent groups of photons.
     ///
     /// The estimate of |f_m|² is Σ_(r≠s) Re(G_r conj G_s)/(1 − Σ a_r²), where group r contributes G_r
     /// to the spectrum and has the share a_r of the batches.
@@ -128,7 +128,7 @@ impl MeasuredPower {
     }
 }
 
-/// Returns all frequencies of the box, in the order of [`MeasuredPower::power`].
+/// All frequencies of the box, in the order of [`MeasuredPower::power`].
 #[expect(
     clippy::cast_possible_wrap,
     reason = "frequencies are at most 16 along each axis"
@@ -149,7 +149,7 @@ pub(crate) fn is_in_last_octave(m: &[isize; 4], max: usize) -> bool {
     m.iter().any(|m| 2 * m.unsigned_abs() > max)
 }
 
-/// Returns the sum of contributions of groups, and its error from the differences of the groups.
+/// The sum of contributions of groups, and its error from the differences of the groups.
 fn mean(groups: impl Iterator<Item = (f64, f64)>) -> Uncertain {
     let groups: Vec<(f64, f64)> = groups.collect();
     let value: f64 = groups.iter().map(|(_, part)| part).sum();

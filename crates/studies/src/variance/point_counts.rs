@@ -22,7 +22,7 @@ impl PointCounts {
         is_allowed.then_some(Self(counts))
     }
 
-    /// Returns the numbers of points.
+    /// The numbers of points.
     #[must_use]
     pub fn all(&self) -> &[usize] {
         &self.0

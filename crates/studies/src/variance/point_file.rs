@@ -25,7 +25,7 @@ pub fn read(path: &Path, arguments: ArgumentStyle) -> Result<PointFile, Failure>
     PointFile::new(name.into_owned(), array).map_err(|e| refused(&e))
 }
 
-/// Returns the rows of an array, or what the file holds instead.
+/// The rows of an array, or what the file holds instead.
 fn array(bytes: &[u8]) -> Result<Vec<WindowPoint>, String> {
     let (header, start) = NpyHeader::read(bytes).ok_or("it is no NPY file")?;
     let is_plain = header.descr == "<f8" && !header.fortran_order;

@@ -38,7 +38,7 @@ impl WordSequence {
         unit(self.word())
     }
 
-    /// Returns the numbers 0 to `count` − 1 in a random order (Fisher and Yates).
+    /// The numbers 0 to `count` − 1 in a random order (Fisher and Yates).
     fn permutation(&mut self, count: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..count).collect();
         for last in (1..count).rev() {
@@ -47,7 +47,7 @@ impl WordSequence {
         order
     }
 
-    /// Returns one random point in each of n² cells.
+    /// One random point in each of n² cells.
     fn jittered_square(&mut self, n: usize) -> Vec<[f64; 2]> {
         let mut point =
             |cell: usize| [cell / n, cell % n].map(|at| (at as f64 + self.unit()) / n as f64);
@@ -90,7 +90,7 @@ pub fn points(sampler: &Sampler, count: usize, seed: u64, set: u64) -> Option<Ve
     })
 }
 
-/// Returns two jittered sets of n² points, paired at random.
+/// Two jittered sets of n² points, paired at random.
 fn padded(n: usize, pairs: AxisPairs, random: &mut WordSequence) -> Vec<WindowPoint> {
     let first = random.jittered_square(n);
     let second = random.jittered_square(n);

@@ -34,12 +34,12 @@ impl GroupShares {
         Self { shares, squares }
     }
 
-    /// Returns the power from the products Re(G_r conj(G − G_r)) of each group.
+    /// The power from the products Re(G_r conj(G − G_r)) of each group.
     pub(crate) fn power(&self, products: &[f64]) -> f64 {
         products.iter().sum::<f64>() / (1.0 - self.squares)
     }
 
-    /// Returns the power without group `r`.
+    /// The power without group `r`.
     pub(crate) fn power_without(&self, products: &[f64], r: usize) -> f64 {
         let square = self.shares[r] * self.shares[r];
         let norm = (1.0 - self.shares[r]).powi(2) - (self.squares - square);
@@ -48,7 +48,7 @@ impl GroupShares {
 }
 
 impl PowerEstimate {
-    /// Returns the sum of all parts.
+    /// The sum of all parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.power.iter().sum()
@@ -62,21 +62,21 @@ impl PowerEstimate {
         octave > MIN_OCTAVE * jackknife_error(&without)
     }
 
-    /// Returns the sum of the parts of `power` that belong to the last octave.
+    /// The sum of the parts of `power` that belong to the last octave.
     pub(crate) fn last_octave(&self, power: &[f64]) -> f64 {
         let of_last = power.iter().zip(&self.is_last);
         let of_last = of_last.filter(|(_, is_last)| **is_last);
         of_last.map(|(p, _)| p).sum()
     }
 
-    /// Returns a function of the power, and its estimates without one group.
+    /// A function of the power, and its estimates without one group.
     pub(crate) fn estimates(&self, of: impl Fn(&[f64]) -> f64) -> (f64, Vec<f64>) {
         let without = self.without_group.iter().map(|power| of(power));
         (of(&self.power), without.collect())
     }
 }
 
-/// Returns the standard error of an estimate by the delete-one jackknife.
+/// The standard error of an estimate by the delete-one jackknife.
 pub(crate) fn jackknife_error(without: &[f64]) -> f64 {
     let n = without.len() as f64;
     let mean = without.iter().sum::<f64>() / n;

@@ -21,7 +21,7 @@ pub struct PredictedVariance {
 }
 
 impl PredictedVariance {
-    /// Returns Σ_(m≠0) |f_m|² E|S_m|², where the power beyond the measured parts is the dyadic tail.
+    /// Σ_(m≠0) |f_m|² E|S_m|², where the power beyond the measured parts is the dyadic tail.
     /// The power and the response are both at frequencies, for sets that are shifted on the torus at
     /// random, or both in dyadic bands, for sets that are not shifted. `count` is N, by which the
     /// noise of radiances is divided.

@@ -19,7 +19,7 @@ const FIRST_NET: u64 = 1 << 47;
 
 /// The radiance along rays, found by rays traced back.
 pub trait RayRadiance: std::fmt::Debug + Send + Sync {
-    /// Returns the radiance along a ray, in the unit of the plane's quantity. `index` selects the
+    /// The radiance along a ray, in the unit of the plane's quantity. `index` selects the
     /// random numbers of scattering.
     fn along(&self, ray: &TwoPlane, index: u64) -> f64;
 }
@@ -80,12 +80,12 @@ impl<'a> WindowRadiance<'a> {
         Self { window, rays }
     }
 
-    /// Returns the radiance along rays.
+    /// The radiance along rays.
     pub(crate) fn into_rays(self) -> Box<dyn RayRadiance + 'a> {
         self.rays
     }
 
-    /// Returns the radiance at a point of the window, in the unit of the plane's quantity. `index`
+    /// The radiance at a point of the window, in the unit of the plane's quantity. `index`
     /// selects the random numbers of scattering.
     #[must_use]
     pub fn at(&self, [x, u, y, v]: WindowPoint, index: u64) -> f64 {
@@ -106,7 +106,7 @@ impl<'a> WindowRadiance<'a> {
         self.rays.along(&ray, index)
     }
 
-    /// Returns the mean radiance at the points of set number `set`.
+    /// The mean radiance at the points of set number `set`.
     pub(crate) fn mean(&self, points: &[WindowPoint], set: u64) -> f64 {
         let radiances = (0..)
             .zip(points)
@@ -114,7 +114,7 @@ impl<'a> WindowRadiance<'a> {
         radiances.sum::<f64>() / points.len() as f64
     }
 
-    /// Returns the moments over the window, from scrambled nets of rays.
+    /// The moments over the window, from scrambled nets of rays.
     ///
     /// Each ray is traced twice, with different random numbers. The product of both radiances has
     /// the mean ∫ f², even if radiances are noisy.
@@ -153,19 +153,19 @@ impl<'a> WindowRadiance<'a> {
         }
     }
 
-    /// Returns the number of steps of which [`moments`](Self::moments) reports the progress.
+    /// The number of steps of which [`moments`](Self::moments) reports the progress.
     #[must_use]
     pub fn steps() -> u64 {
         NETS
     }
 }
 
-/// Returns the index of the random numbers of ray `ray` of a set.
+/// The index of the random numbers of ray `ray` of a set.
 fn index_of(set: u64, ray: u64) -> u64 {
     set.wrapping_mul(MAX_POINTS as u64) + ray
 }
 
-/// Returns the mean, the variance and the noise from the means over nets. The square of the mean is
+/// The mean, the variance and the noise from the means over nets. The square of the mean is
 /// the mean product of different nets.
 fn moments_of<'a>(nets: impl Iterator<Item = &'a [f64; 3]>) -> [f64; 3] {
     let mut sums = [0.0; 3];

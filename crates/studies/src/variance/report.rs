@@ -196,7 +196,7 @@ impl WindowStudy<'_> {
         }
     }
 
-    /// Returns the frequencies at which a sampler is worse than independent points.
+    /// The frequencies at which a sampler is worse than independent points.
     fn worse(&self, response: &SamplerResponse, count: usize) -> WorsePower {
         let variance = self.moments.variance.value;
         let mut share = 0.0;
@@ -240,7 +240,7 @@ impl VarianceCurve {
     }
 }
 
-/// Returns the power of each of the 15 sets of axes as a share of σ². Sets with fewer axes come
+/// The power of each of the 15 sets of axes as a share of σ². Sets with fewer axes come
 /// first. A Latin hypercube removes the power of single axes, and padding removes the power of sets
 /// inside one of its pairs.
 #[must_use]
@@ -275,7 +275,7 @@ pub fn axis_sets(power: &MeasuredPower, moments: &WindowMoments) -> Vec<AxisSetP
     order.into_iter().map(named).collect()
 }
 
-/// Returns the ratio of two independent numbers.
+/// The ratio of two independent numbers.
 fn ratio(a: Uncertain, b: Uncertain) -> Uncertain {
     let value = a.value / b.value;
     let [of_a, of_b] = [a, b].map(|number| number.error / number.value);

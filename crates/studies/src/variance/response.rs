@@ -28,14 +28,14 @@ pub struct SamplerResponse {
     pub(crate) tail: Vec<f64>,
 }
 
-/// Returns the share of the tail's power in octave `k`.
+/// The share of the tail's power in octave `k`.
 fn octave_share(k: u32) -> f64 {
     let halvings = if k == OCTAVES { k - 1 } else { k };
     libm::exp2(-f64::from(halvings))
 }
 
 impl SamplerResponse {
-    /// Returns the response of `count` points at the frequencies up to `max`. Returns `None` if the
+    /// The response of `count` points at the frequencies up to `max`. Returns `None` if the
     /// sampler has no sets of `count` points.
     #[must_use]
     pub fn new(sampler: &Sampler, count: usize, max: usize, seed: u64) -> Option<Self> {
@@ -64,7 +64,7 @@ impl SamplerResponse {
         })
     }
 
-    /// Returns the response in dyadic bands, for sets that are not shifted. Returns `None` if the
+    /// The response in dyadic bands, for sets that are not shifted. Returns `None` if the
     /// cells of the sampler are no dyadic blocks.
     #[must_use]
     pub fn in_bands(sampler: &Sampler, count: usize) -> Option<Self> {
@@ -86,7 +86,7 @@ impl SamplerResponse {
         })
     }
 
-    /// Returns |S_m|² of a fixed set. The tail of each frequency has one frequency, drawn at random
+    /// |S_m|² of a fixed set. The tail of each frequency has one frequency, drawn at random
     /// in a random octave.
     fn of_points(points: &[WindowPoint], max: usize, seed: u64) -> Self {
         let all = box_frequencies(max);
@@ -116,7 +116,7 @@ impl SamplerResponse {
     }
 }
 
-/// Returns |S_m|² of a set at one frequency.
+/// |S_m|² of a set at one frequency.
 fn power(points: &[WindowPoint], m: [f64; 4]) -> f64 {
     let phase = |z: &WindowPoint| {
         // Whole turns are removed from each product, so that phases keep their digits.
@@ -130,7 +130,7 @@ fn power(points: &[WindowPoint], m: [f64; 4]) -> f64 {
     sum.norm_sqr() / (points.len() as f64).powi(2)
 }
 
-/// Returns |S_m|² of a set at all frequencies up to `max`; 0 at m = 0.
+/// |S_m|² of a set at all frequencies up to `max`; 0 at m = 0.
 fn box_powers(points: &[WindowPoint], max: usize) -> Vec<f64> {
     let width = 2 * max + 1;
     let waves = |z: f64| -> Vec<Complex> {

@@ -61,7 +61,7 @@ pub enum PointFileError {
 }
 
 impl AxisPairs {
-    /// Returns the axes of both pairs, as indices into (x, u, y, v).
+    /// The axes of both pairs, as indices into (x, u, y, v).
     #[must_use]
     pub fn axes(self) -> [[usize; 2]; 2] {
         match self {
@@ -101,7 +101,7 @@ impl Sampler {
     /// The names that [`named`](Self::named) knows.
     pub const NAMES: [&str; 5] = ["independent", "jitter", "lhs", "sobol", "padded"];
 
-    /// Returns the samplers with a name: one, or both padded samplers. Returns `None` if no sampler
+    /// The samplers with a name: one, or both padded samplers. Returns `None` if no sampler
     /// has this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Vec<Self>> {
@@ -130,7 +130,7 @@ impl Sampler {
             }
     }
 
-    /// Returns the number that selects the random numbers of the sampler's sets.
+    /// The number that selects the random numbers of the sampler's sets.
     pub(crate) fn number(&self) -> u64 {
         match self {
             Self::Independent => 0,
@@ -143,7 +143,7 @@ impl Sampler {
         }
     }
 
-    /// Returns the numbers of points among `counts` that the sampler has. A file has only its own
+    /// The numbers of points among `counts` that the sampler has. A file has only its own
     /// number of points.
     #[must_use]
     pub fn counts(&self, counts: &[usize]) -> Vec<usize> {
@@ -168,7 +168,7 @@ impl fmt::Display for Sampler {
     }
 }
 
-/// Returns the four indices of an element of an array [n, n, n, n] in row-major order.
+/// The four indices of an element of an array [n, n, n, n] in row-major order.
 pub(crate) fn indices(element: usize, n: usize) -> [usize; 4] {
     [n * n * n, n * n, n, 1].map(|stride| element / stride % n)
 }

@@ -77,7 +77,7 @@ pub struct VarianceOptions {
 }
 
 impl VarianceOptions {
-    /// Returns the default options: all samplers that are not files.
+    /// The default options: all samplers that are not files.
     #[must_use]
     pub fn new(arguments: ArgumentStyle) -> Self {
         Self {
@@ -252,13 +252,13 @@ impl<'a> VarianceStudy<'a> {
         bands.map(Some).map_err(failure)
     }
 
-    /// Returns the failure for a radiance that is the same over the whole window.
+    /// The failure for a radiance that is the same over the whole window.
     #[must_use]
     pub fn constant(&self) -> Failure {
         Failure::bad_input(format!("{}: {}", self.light.plane.name, CONSTANT))
     }
 
-    /// Returns the number of sets of points with which errors are found.
+    /// The number of sets of points with which errors are found.
     fn sets(&self) -> usize {
         let VarianceOptions {
             samplers,
@@ -277,7 +277,7 @@ impl<'a> VarianceStudy<'a> {
         sets.sum::<usize>() * *shifts as usize
     }
 
-    /// Returns the content of the index of a scene, without its list of files. `scene` is the scene
+    /// The content of the index of a scene, without its list of files. `scene` is the scene
     /// before its windows were replaced.
     #[must_use]
     pub fn index(
@@ -296,7 +296,7 @@ impl<'a> VarianceStudy<'a> {
 }
 
 impl PlaneVariance {
-    /// Returns the result as JSON, without the scene.
+    /// The result as JSON, without the scene.
     #[must_use]
     pub fn tree(&self, options: &VarianceOptions) -> serde_json::Value {
         serde_json::json!({
@@ -328,7 +328,7 @@ impl PlaneVariance {
     }
 }
 
-/// Returns the failure for a plane that cannot be studied.
+/// The failure for a plane that cannot be studied.
 fn failure(error: VarianceError) -> Failure {
     match error {
         VarianceError::TooFewBatches(_) => Failure::bad_input(format!("run.batches: {error}")),

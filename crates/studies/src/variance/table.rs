@@ -14,7 +14,7 @@ const SETS_PER_ROW: usize = 3;
 /// are reported.
 const MAX_DIFFERENCE: f64 = 4.0;
 
-/// Returns all tables.
+/// All tables.
 #[must_use]
 pub fn text(found: &PlaneVariance, options: &VarianceOptions) -> String {
     let mut lines = head(found, options);
@@ -77,7 +77,7 @@ fn head(found: &PlaneVariance, options: &VarianceOptions) -> Vec<String> {
     lines
 }
 
-/// Returns the table of sets of axes.
+/// The table of sets of axes.
 fn sets(sets: &[AxisSetPower]) -> Vec<String> {
     let cell = |set: &AxisSetPower| {
         let share = [set.share.value, set.share.error].map(|share| 100.0 * share);
@@ -94,7 +94,7 @@ fn sets(sets: &[AxisSetPower]) -> Vec<String> {
     aligned(sets.chunks(SETS_PER_ROW).map(row).collect())
 }
 
-/// Returns the tables of one sampler.
+/// The tables of one sampler.
 fn of_sampler(report: &SamplerReport, mean: f64) -> Vec<String> {
     let name = &report.sampler;
     let mut lines = of_curve(name, &report.shifted, mean);
@@ -143,7 +143,7 @@ fn of_curve(name: &str, curve: &VarianceCurve, mean: f64) -> Vec<String> {
     lines
 }
 
-/// Returns a row of the table of a sampler. Errors are relative to the mean.
+/// A row of the table of a sampler. Errors are relative to the mean.
 fn row(count: &CountReport, mean: f64) -> [String; 7] {
     let error = |variance: Uncertain| {
         let value = variance.value.max(0.0).sqrt() / mean;
@@ -169,7 +169,7 @@ fn row(count: &CountReport, mean: f64) -> [String; 7] {
     ]
 }
 
-/// Returns the frequencies at which a sampler is worse than independent points.
+/// The frequencies at which a sampler is worse than independent points.
 fn worst(count: &CountReport) -> Option<String> {
     let worse = count.worse.as_ref()?;
     let worst = worse.worst.first()?;

@@ -9,18 +9,18 @@ use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
 use std::f64::consts::PI;
 
-/// Returns the covariance of a Gaussian exp(−t²/2s), in cycles per unit, squared.
+/// The covariance of a Gaussian exp(−t²/2s), in cycles per unit, squared.
 fn gaussian(variance: f64) -> f64 {
     1.0 / (8.0 * PI * PI * variance)
 }
 
-/// Returns the covariance of the Gaussian with the variance r²/3 that replaces an opening of
+/// The covariance of the Gaussian with the variance r²/3 that replaces an opening of
 /// half-width r.
 fn opening(half_width: f64) -> f64 {
     gaussian(half_width * half_width / 3.0)
 }
 
-/// Returns the covariance of one profile of a window, in cycles per unit, squared. The covariance
+/// The covariance of one profile of a window, in cycles per unit, squared. The covariance
 /// is 1/12h² for a Hann profile of half-width h, and 1/4πw² for a Gaussian exp(−πt²/w²) without
 /// truncation. A box profile has edges, so a Gaussian of the same variance replaces the box.
 #[must_use]
@@ -32,14 +32,14 @@ pub fn profile(profile: &Profile) -> f64 {
     }
 }
 
-/// Returns the covariance of the window of a plane.
+/// The covariance of the window of a plane.
 #[must_use]
 pub fn window(window: &Window) -> Matrix<4> {
     let Window { x, y, u, v } = window;
     diagonal([x, y, u, v].map(profile))
 }
 
-/// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared.
+/// The covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared.
 /// The covariance is the variance f² m²/(2 + m²) of the grating's three spectral lines, weighted by
 /// their power. If the replicas of the light's spectrum do not overlap, the covariance adds to the
 /// covariance of the light.
@@ -49,7 +49,7 @@ pub fn grating(grating: &Grating) -> f64 {
     grating.frequency * grating.frequency * square / (2.0 + square)
 }
 
-/// Returns the covariance of a mask, in the coordinates of its own plane. An opaque mask is
+/// The covariance of a mask, in the coordinates of its own plane. An opaque mask is
 /// treated as an opening about the central ray. The opening is the largest disc about the central
 /// ray that contains no shape; half-planes narrow the opening along their axis. (The course notes
 /// of Belcour 2016 use the largest unoccluded disc.) The hole of an aperture is treated as a
@@ -89,7 +89,7 @@ pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     Some(factor)
 }
 
-/// Returns the distance from the central ray to the nearest point of a shape; the ray must not
+/// The distance from the central ray to the nearest point of a shape; the ray must not
 /// pass through the shape.
 fn distance(shape: &Shape) -> f64 {
     match shape {
@@ -101,7 +101,7 @@ fn distance(shape: &Shape) -> f64 {
     }
 }
 
-/// Returns the covariance of the cosine factor cos⁺θ cos²φ on a surface: 1/4π² cycles² along the
+/// The covariance of the cosine factor cos⁺θ cos²φ on a surface: 1/4π² cycles² along the
 /// longitude θ and 1/3π² cycles² along the latitude φ.
 #[must_use]
 pub fn cosine() -> Matrix<4> {
@@ -109,7 +109,7 @@ pub fn cosine() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.25 / square, 1.0 / (3.0 * square)])
 }
 
-/// Returns the covariance of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along each
+/// The covariance of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along each
 /// of u and v.
 #[must_use]
 pub fn slope_cosine() -> Matrix<4> {
@@ -117,7 +117,7 @@ pub fn slope_cosine() -> Matrix<4> {
     diagonal([0.0, 0.0, along, along])
 }
 
-/// Returns the covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
+/// The covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
 /// angle θ₀ to the normal. Returns `None` for Lambert's lobe, which is uniform over all
 /// directions.
 ///

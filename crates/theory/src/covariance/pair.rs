@@ -22,7 +22,7 @@ pub struct SpectralCovariance {
 }
 
 impl SpectralCovariance {
-    /// Returns the spectral covariance of light that is a Gaussian over (x, y, u, v) with the
+    /// The spectral covariance of light that is a Gaussian over (x, y, u, v) with the
     /// given variances, in squares of metres and slopes. A variance of zero represents a point or
     /// a single direction, and an infinite variance represents unbounded light.
     #[must_use]
@@ -34,7 +34,7 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the spectral covariance for a matrix C.
+    /// The spectral covariance for a matrix C.
     #[must_use]
     pub fn of(matrix: &Matrix<4>) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns A⁻ᵀ C A⁻¹, the covariance after a change z' = A z + t of ray coordinates. The offset
+    /// A⁻ᵀ C A⁻¹, the covariance after a change z' = A z + t of ray coordinates. The offset
     /// does not affect the power spectrum. Returns `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
@@ -54,7 +54,7 @@ impl SpectralCovariance {
         })
     }
 
-    /// Returns C + W, the covariance after a product with a factor whose power spectrum has the
+    /// C + W, the covariance after a product with a factor whose power spectrum has the
     /// covariance W.
     #[must_use]
     pub fn multiplied(&self, factor: &Matrix<4>) -> Self {
@@ -64,7 +64,7 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a convolution of the light field with a Gaussian of covariance
+    /// The covariance after a convolution of the light field with a Gaussian of covariance
     /// s, in squares of metres and radians. The convolution increases C⁻¹ by 8π² s. If the
     /// covariance s is zero, as for a mirror, C does not change.
     #[must_use]
@@ -76,7 +76,7 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after diffuse reflection. Diffuse reflection integrates light over
+    /// The covariance after diffuse reflection. Diffuse reflection integrates light over
     /// all directions and spreads the result uniformly over directions, so only the spectrum at ν =
     /// 0 remains. The block of C⁻¹ for positions does not change, and C⁻¹ becomes infinite along
     /// both angles.
@@ -119,13 +119,13 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns C. Returns `None` if the spectrum is unbounded, as for light from a point.
+    /// C. Returns `None` if the spectrum is unbounded, as for light from a point.
     #[must_use]
     pub fn matrix(&self) -> Option<Matrix<4>> {
         Some(symmetric(&product(&self.p, &inverse(&self.q)?)))
     }
 
-    /// Returns S, the covariance of the Gaussian light field, in squares of metres and slopes.
+    /// S, the covariance of the Gaussian light field, in squares of metres and slopes.
     /// Returns `None` if the field is unbounded.
     #[must_use]
     pub fn field(&self) -> Option<Matrix<4>> {
@@ -139,7 +139,7 @@ fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }
 
-/// Returns |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
+/// |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
 #[must_use]
 pub fn power(field: &Matrix<4>, omega: [f64; 4]) -> f64 {
     let along = times(field, &omega);

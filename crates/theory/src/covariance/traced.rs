@@ -50,7 +50,7 @@ impl Display for Untraced {
 
 /// A model with a light path along which covariance is traced.
 pub trait Traced {
-    /// Returns the covariance of the spectrum before the window of the plane.
+    /// The covariance of the spectrum before the window of the plane.
     ///
     /// # Errors
     /// Returns the reason why covariance tracing does not apply.
@@ -128,7 +128,7 @@ fn after_scatterer(view: &Observed) -> Result<SpectralCovariance, Untraced> {
     moved(&leaving, &chain.maps[1])
 }
 
-/// Returns the covariance of light at the source. The light is replaced by a Gaussian that has the
+/// The covariance of light at the source. The light is replaced by a Gaussian that has the
 /// same variances of positions and slopes.
 fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
     let endless = f64::INFINITY;
@@ -155,7 +155,7 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
     })
 }
 
-/// Returns the second central moments of a uniform shape along x and y.
+/// The second central moments of a uniform shape along x and y.
 fn variances(shape: &Shape) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => rectangle.size.map(|side| side * side / 12.0),
@@ -163,7 +163,7 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// Returns the covariance of the light after the light has been multiplied by the grating of the
+/// The covariance of the light after the light has been multiplied by the grating of the
 /// light source's picture, if it has one. `first` is the index of the first coordinate (position or
 /// slope) of the picture.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
@@ -175,7 +175,7 @@ fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCov
     })
 }
 
-/// Returns the variance of an environment with a single lobe, in radians squared.
+/// The variance of an environment with a single lobe, in radians squared.
 fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
     match &environment.map {
         EnvironmentMap::Lobes(lobes) if lobes.len() == 1 => Ok(lobes[0].width * lobes[0].width),
@@ -183,7 +183,7 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
     }
 }
 
-/// Returns the covariance of light after the masks of the first leg, and the distance from the
+/// The covariance of light after the masks of the first leg, and the distance from the
 /// light to the last mask. `length` is the length of the leg.
 fn past_masks(view: &Observed, length: f64) -> Result<(SpectralCovariance, f64), Untraced> {
     let start = (of_light(&view.system.light)?, 0.0);
@@ -203,7 +203,7 @@ fn moved(light: &SpectralCovariance, map: &AffineMap<4>) -> Result<SpectralCovar
     light.mapped(map).ok_or(Untraced::Lost)
 }
 
-/// Returns the covariance after multiplication by the cosine if the plane records differential
+/// The covariance after multiplication by the cosine if the plane records differential
 /// irradiance, and an unchanged covariance otherwise.
 fn counted(
     light: &SpectralCovariance,
@@ -219,7 +219,7 @@ fn counted(
     }
 }
 
-/// Returns a covariance matrix that is non-zero only along the direction (a, b) of positions.
+/// A covariance matrix that is non-zero only along the direction (a, b) of positions.
 fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
     let entry = |p: f64, q: f64| p * q * variance;
     let none = [0.0; 4];

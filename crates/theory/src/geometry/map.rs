@@ -20,14 +20,14 @@ pub struct AffineMap<const N: usize> {
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
-    /// Returns the affine map that is tangent to another map of rays, at the ray z = 0. It is
+    /// The affine map that is tangent to another map of rays, at the ray z = 0. It is
     /// computed by differences of fourth order and is accurate to about 10⁻¹⁰ per metre and radian.
     /// Returns `None` if a ray near z = 0 does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
 
-    /// Returns the tangent map by differences with the given step.
+    /// The tangent map by differences with the given step.
     fn touching_by(step: f64, map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         let offset = map([0.0; N])?;
         let mut matrix: Matrix<N> = [[0.0; N]; N];
@@ -60,7 +60,7 @@ impl<const N: usize> AffineMap<N> {
         Some((self.apart(&fine, half) - open).max(0.0))
     }
 
-    /// Returns the distance between this map and another map, in half-widths of a window. The
+    /// The distance between this map and another map, in half-widths of a window. The
     /// distance is the largest difference between the images of a ray under the two maps, over all
     /// rays that either map takes into the window.
     pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
@@ -82,20 +82,20 @@ impl<const N: usize> AffineMap<N> {
         most
     }
 
-    /// Returns the map z' = A z.
+    /// The map z' = A z.
     #[must_use]
     pub const fn linear(matrix: Matrix<N>) -> Self {
         let offset = [0.0; N];
         Self { matrix, offset }
     }
 
-    /// Returns the identity map.
+    /// The identity map.
     #[must_use]
     pub fn identity() -> Self {
         Self::linear(diagonal([1.0; N]))
     }
 
-    /// Returns the map that applies this map first and then `next`.
+    /// The map that applies this map first and then `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -104,7 +104,7 @@ impl<const N: usize> AffineMap<N> {
         }
     }
 
-    /// Returns the inverse map; `None` if an elimination of A meets a pivot that is zero or not
+    /// The inverse map; `None` if an elimination of A meets a pivot that is zero or not
     /// finite.
     #[must_use]
     pub fn inverse(&self) -> Option<Self> {
@@ -122,13 +122,13 @@ impl<const N: usize> AffineMap<N> {
         matrix::determinant(&self.matrix)
     }
 
-    /// Returns the image A z + t of a ray z.
+    /// The image A z + t of a ray z.
     #[must_use]
     pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
         plus(&times(&self.matrix, &ray), &self.offset)
     }
 
-    /// Returns the effect of the map on spectra, which has the factor |det A|, the matrix Aᵀ and
+    /// The effect of the map on spectra, which has the factor |det A|, the matrix Aᵀ and
     /// the phase vector t.
     #[must_use]
     pub fn spectrum_map(&self) -> SpectrumMap<N> {
@@ -139,7 +139,7 @@ impl<const N: usize> AffineMap<N> {
         }
     }
 
-    /// Returns the spectrum at Ω after the map, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), for a field with the
+    /// The spectrum at Ω after the map, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), for a field with the
     /// spectrum L before it.
     ///
     /// Frequencies are in cycles per unit of each coordinate.
@@ -148,14 +148,14 @@ impl<const N: usize> AffineMap<N> {
         self.spectrum_map().spectrum(omega, before)
     }
 
-    /// Returns the covariance of rays after the map, A S Aᵀ, for rays with the covariance S before
+    /// The covariance of rays after the map, A S Aᵀ, for rays with the covariance S before
     /// it.
     #[must_use]
     pub fn covariance(&self, before: &Matrix<N>) -> Matrix<N> {
         congruent(&self.matrix, before)
     }
 
-    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, where S is this covariance
+    /// The covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, where S is this covariance
     /// before the map. Returns `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
@@ -163,7 +163,7 @@ impl<const N: usize> AffineMap<N> {
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns the largest entry of |Aᵀ J A − r J|, which is zero if the map conserves étendue. J
+    /// The largest entry of |Aᵀ J A − r J|, which is zero if the map conserves étendue. J
     /// is [[0, 1], [−1, 0]] in blocks, and r is the index of refraction before the map divided by
     /// the index after the map.
     ///
@@ -187,7 +187,7 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl<const N: usize> SpectrumMap<N> {
-    /// Returns the effect on rays, z' = A z + t, where A is the transpose of the matrix and t is
+    /// The effect on rays, z' = A z + t, where A is the transpose of the matrix and t is
     /// the phase.
     #[must_use]
     pub fn rays(&self) -> AffineMap<N> {
@@ -199,7 +199,7 @@ impl<const N: usize> SpectrumMap<N> {
 }
 
 impl AffineMap<4> {
-    /// Returns the map that applies one map to (x, u) and another to (y, v).
+    /// The map that applies one map to (x, u) and another to (y, v).
     #[must_use]
     pub fn sections(x: &AffineMap<2>, y: &AffineMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.offset, y.offset];

@@ -30,7 +30,7 @@ pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     (0..N).map(|i| a[i] * b[i]).sum()
 }
 
-/// Returns the product A z of a matrix and a vector.
+/// The product A z of a matrix and a vector.
 pub(crate) fn times<const N: usize>(a: &Matrix<N>, z: &[f64; N]) -> [f64; N] {
     a.map(|row| dot(&row, z))
 }
@@ -39,12 +39,12 @@ pub(crate) fn plus<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     array::from_fn(|i| a[i] + b[i])
 }
 
-/// Returns the matrix A S Aᵀ.
+/// The matrix A S Aᵀ.
 pub(crate) fn congruent<const N: usize>(a: &Matrix<N>, s: &Matrix<N>) -> Matrix<N> {
     product(&product(a, s), &transpose(a))
 }
 
-/// Returns the matrix that applies the matrix `x` to the coordinates (0, 2) and the matrix `y` to
+/// The matrix that applies the matrix `x` to the coordinates (0, 2) and the matrix `y` to
 /// the coordinates (1, 3).
 pub(crate) fn sections(x: &Matrix<2>, y: &Matrix<2>) -> Matrix<4> {
     let parts = [x, y];
@@ -57,12 +57,12 @@ pub(crate) fn sections(x: &Matrix<2>, y: &Matrix<2>) -> Matrix<4> {
     })
 }
 
-/// Returns the determinant.
+/// The determinant.
 pub(crate) fn determinant<const N: usize>(a: &Matrix<N>) -> f64 {
     eliminate(*a).map_or_else(|zero| zero, |(determinant, _)| determinant)
 }
 
-/// Returns the inverse of a matrix, or `None` if a pivot of the elimination is zero or not finite.
+/// The inverse of a matrix, or `None` if a pivot of the elimination is zero or not finite.
 pub(crate) fn inverse<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
     eliminate(*a).ok().map(|(_, inverse)| inverse)
 }

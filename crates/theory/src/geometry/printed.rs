@@ -21,7 +21,7 @@ pub enum Edition {
 }
 
 impl Edition {
-    /// Returns the step of light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ
+    /// The step of light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ
     /// θ₀)/c₀ L(−c₀ Ωx, Ωθ).
     #[must_use]
     pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {
@@ -39,7 +39,7 @@ impl Edition {
         }
     }
 
-    /// Returns the step of the outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
+    /// The step of the outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
     #[must_use]
     pub fn outgoing(self, theta1: f64) -> SpectrumMap<2> {
         let right = AffineMap::<2>::outgoing(theta1).spectrum_map();
@@ -53,7 +53,7 @@ impl Edition {
         }
     }
 
-    /// Returns the step of light incidence in 4D, where (x, θ) change as in 2D. The paper does not
+    /// The step of light incidence in 4D, where (x, θ) change as in 2D. The paper does not
     /// mention that the latitude changes its sign; this function includes the change of sign for
     /// every edition.
     #[must_use]
@@ -61,20 +61,20 @@ impl Edition {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
     }
 
-    /// Returns the step of curvature in 4D. In the text after Eq. 19, this step is a shear by M
+    /// The step of curvature in 4D. In the text after Eq. 19, this step is a shear by M
     /// without the cosine.
     #[must_use]
     pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
         AffineMap::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
     }
 
-    /// Returns the step back from the frames of the local normals in 4D.
+    /// The step back from the frames of the local normals in 4D.
     #[must_use]
     pub fn back_4d(self, shape: Matrix<2>, theta1: f64) -> SpectrumMap<4> {
         AffineMap::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
     }
 
-    /// Returns the step of the outgoing angle in 4D, where (x, θ) change as in 2D.
+    /// The step of the outgoing angle in 4D, where (x, θ) change as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(
@@ -83,7 +83,7 @@ impl Edition {
         )
     }
 
-    /// Returns the sign of the shear by curvature relative to the sign from ray geometry: −1 for
+    /// The sign of the shear by curvature relative to the sign from ray geometry: −1 for
     /// Eq. 11, which has the opposite sign, and 1 otherwise.
     pub(super) fn sign(self) -> f64 {
         match self {
@@ -96,7 +96,7 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// Returns the longitude whose cosine multiplies M. The text after Eq. 19 omits the cosine, so
+    /// The longitude whose cosine multiplies M. The text after Eq. 19 omits the cosine, so
     /// its longitude is 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
@@ -106,7 +106,7 @@ impl Edition {
     }
 }
 
-/// Returns the phase vector for which e^(−2πi Ω·t) equals the printed e^(−iΩ·t).
+/// The phase vector for which e^(−2πi Ω·t) equals the printed e^(−iΩ·t).
 fn without_two_pi(phase: [f64; 2]) -> [f64; 2] {
     phase.map(|t| t / TAU)
 }

@@ -19,7 +19,7 @@ impl Media {
         self.before / self.after
     }
 
-    /// Returns the angle θ₂ of the refracted ray by Snell's law, n₁ sin θ₁ = n₂ sin θ₂. Returns
+    /// The angle θ₂ of the refracted ray by Snell's law, n₁ sin θ₁ = n₂ sin θ₂. Returns
     /// `None` under total internal reflection.
     ///
     /// Like every angle on a surface, θ₂ is the direction from which light seems to come: the
@@ -32,7 +32,7 @@ impl Media {
 }
 
 impl AffineMap<2> {
-    /// Returns the map of local directions under refraction by Snell's law, linearised at θ₀: θ' =
+    /// The map of local directions under refraction by Snell's law, linearised at θ₀: θ' =
     /// θ₂ + (θ − θ₀) n₁ cos θ₀/(n₂ cos θ₂).
     ///
     /// The formula follows by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); Durand et
@@ -52,7 +52,7 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Returns the map of local directions under refraction. The longitude changes as in 2D, and
+    /// The map of local directions under refraction. The longitude changes as in 2D, and
     /// the latitude satisfies n₁ φ = n₂ φ'.
     ///
     /// The tangential part of n ω is the same on both sides. Its component along B is n sin φ. Its

@@ -20,7 +20,7 @@ pub struct SpectrumMap<const N: usize> {
 }
 
 impl<const N: usize> SpectrumMap<N> {
-    /// Returns this step followed by `next`.
+    /// This step followed by `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -30,7 +30,7 @@ impl<const N: usize> SpectrumMap<N> {
         }
     }
 
-    /// Returns the spectrum at Ω after the step, for a field with the spectrum L before it.
+    /// The spectrum at Ω after the step, for a field with the spectrum L before it.
     #[must_use]
     pub fn spectrum(&self, omega: [f64; N], before: &dyn Fn([f64; N]) -> Complex) -> Complex {
         let turn = cis(-TAU * dot(&omega, &self.phase)) * self.factor;
@@ -39,7 +39,7 @@ impl<const N: usize> SpectrumMap<N> {
 }
 
 impl SpectrumMap<4> {
-    /// Returns the 4D step that applies the step `x` to (Ωx, Ωu) and the step `y` to (Ωy, Ωv).
+    /// The 4D step that applies the step `x` to (Ωx, Ωu) and the step `y` to (Ωy, Ωv).
     #[must_use]
     pub fn sections(x: &SpectrumMap<2>, y: &SpectrumMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.phase, y.phase];

@@ -8,7 +8,7 @@
 use super::AffineMap;
 
 impl AffineMap<2> {
-    /// Returns the map of light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the
+    /// The map of light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the
     /// direction θ₀, and directions of light are flipped.
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 has cos
@@ -22,7 +22,7 @@ impl AffineMap<2> {
         }
     }
 
-    /// Returns the map of curvature, into the frames of the local normals: θ' = θ − k s. The
+    /// The map of curvature, into the frames of the local normals: θ' = θ − k s. The
     /// surface is convex if k > 0, and |k| is 1/R, in 1/m.
     ///
     /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 prints + k Ωθ, which
@@ -32,14 +32,14 @@ impl AffineMap<2> {
         Self::linear([[1.0, 0.0], [-k, 1.0]])
     }
 
-    /// Returns the map back from the frames of the local normals: θ = θ' + k s (Durand et al. 2005,
+    /// The map back from the frames of the local normals: θ = θ' + k s (Durand et al. 2005,
     /// step 6). This map is the inverse of [`curvature`](Self::curvature).
     #[must_use]
     pub fn back(k: f64) -> Self {
         Self::curvature(-k)
     }
 
-    /// Returns the map of the outgoing angle: x = s cos θ₁, θ = θₒ − θ₁. Light leaves in the
+    /// The map of the outgoing angle: x = s cos θ₁, θ = θₒ − θ₁. Light leaves in the
     /// direction θ₁.
     ///
     /// L'(Ωx, Ωθ) = e^(2πi Ωθ θ₁) cos θ₁ · L(cos θ₁ Ωx, Ωθ). Eq. 10 and Table 1 of Durand et al.
@@ -54,7 +54,7 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Returns the map of light incidence in the plane of (X, D): it is s_x = −x/cos θ₀, s_y = y,
+    /// The map of light incidence in the plane of (X, D): it is s_x = −x/cos θ₀, s_y = y,
     /// θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions also flips the latitude, which section 5.2 of Durand et al. 2005 does
@@ -64,7 +64,7 @@ impl AffineMap<4> {
         Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())
     }
 
-    /// Returns the map of curvature, into the frames of the local normals: (θ', φ') = (θ, φ) −
+    /// The map of curvature, into the frames of the local normals: (θ', φ') = (θ, φ) −
     /// diag(1, cos θ₀) M s for directions about the longitude θ₀.
     ///
     /// `shape` is the symmetric matrix M, the derivative of the normal along (T, B), in 1/m and
@@ -77,7 +77,7 @@ impl AffineMap<4> {
         Self::tilt(shape, -1.0, theta0)
     }
 
-    /// Returns the map back from the frames of the local normals: (θ, φ) = (θ', φ') + diag(1, cos
+    /// The map back from the frames of the local normals: (θ, φ) = (θ', φ') + diag(1, cos
     /// θ₁) M s for directions about the longitude θ₁.
     #[must_use]
     pub fn back(shape: Matrix2, theta1: f64) -> Self {
@@ -94,7 +94,7 @@ impl AffineMap<4> {
         ])
     }
 
-    /// Returns the map of the outgoing angle: x = s_x cos θ₁, y = s_y, θ = θₒ − θ₁, φ = φₒ.
+    /// The map of the outgoing angle: x = s_x cos θ₁, y = s_y, θ = θₒ − θ₁, φ = φₒ.
     #[must_use]
     pub fn outgoing(theta1: f64) -> Self {
         Self::sections(&AffineMap::<2>::outgoing(theta1), &AffineMap::identity())

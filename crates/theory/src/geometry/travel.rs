@@ -5,7 +5,7 @@ use super::matrix::{diagonal, from_fn, transpose};
 use std::array;
 
 impl<const N: usize> AffineMap<N> {
-    /// Returns the map of travel over a distance d, in metres: x' = x + d u, y' = y + d v.
+    /// The map of travel over a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
     /// The step is exact if (u, v) are slopes. If (u, v) are angles, the step holds to first order.
     /// L'(Ωx, Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2
@@ -20,7 +20,7 @@ impl<const N: usize> AffineMap<N> {
         ))
     }
 
-    /// Returns the map of a thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. If
+    /// The map of a thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. If
     /// f is positive, the lens converges light.
     ///
     /// The map describes an ideal lens, which images planes onto planes exactly if directions are
@@ -30,7 +30,7 @@ impl<const N: usize> AffineMap<N> {
         Self::linear(transpose(&Self::travel(-1.0 / focal_length).matrix))
     }
 
-    /// Returns the map of the mirror reflection of local directions, θ' = −θ and φ' = −φ, in the
+    /// The map of the mirror reflection of local directions, θ' = −θ and φ' = −φ, in the
     /// frames of the local normals.
     ///
     /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ,
@@ -43,7 +43,7 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<4> {
-    /// Returns the map of a rotation of the axes by an angle in radians, from the first axis
+    /// The map of a rotation of the axes by an angle in radians, from the first axis
     /// towards the second: x' = x cos + y sin, y' = −x sin + y cos, and likewise for directions. A
     /// is orthogonal.
     ///

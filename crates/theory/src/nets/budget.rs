@@ -25,7 +25,7 @@ pub struct RayBudget {
 const MAX_STEPS: f64 = 1e10;
 
 impl RayBudget {
-    /// Returns the budget for the only light of a scene with one plane, from the maximum number of
+    /// The budget for the only light of a scene with one plane, from the maximum number of
     /// nodes and the relative error.
     #[must_use]
     pub const fn new(nodes: f64, error: f64) -> Self {
@@ -37,7 +37,7 @@ impl RayBudget {
         }
     }
 
-    /// Returns this budget for one of several equal parts of the work whose errors are independent.
+    /// This budget for one of several equal parts of the work whose errors are independent.
     #[must_use]
     pub fn shared(self, parts: usize) -> Self {
         let parts = parts as f64;
@@ -58,7 +58,7 @@ pub(super) const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
 /// nodes of the prediction. Each node has two rays for each parameter.
 const FOR_DERIVATIVES: f64 = 0.5;
 
-/// Returns how many derivatives a budget of rays includes, if they take half of the nodes that
+/// How many derivatives a budget of rays includes, if they take half of the nodes that
 /// derivatives may take. With fewer nodes for each, the noise of derivatives would make stated
 /// errors of parameters too small.
 pub(crate) fn affordable_derivatives(budget: RayBudget) -> usize {
@@ -66,13 +66,13 @@ pub(crate) fn affordable_derivatives(budget: RayBudget) -> usize {
     whole(0.5 * FOR_DERIVATIVES * budget.nodes / each)
 }
 
-/// Returns the maximum number of nodes in each net for derivatives.
+/// The maximum number of nodes in each net for derivatives.
 pub(super) fn most_for_derivatives(fields: usize, nodes: f64) -> u32 {
     let all = FOR_DERIVATIVES * nodes / fields as f64;
     power_of_two(all / OF_DERIVATIVES as f64, DERIVATIVE_NODES)
 }
 
-/// Returns the largest power of two that is at most `count` and within a range of powers of two.
+/// The largest power of two that is at most `count` and within a range of powers of two.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -21,7 +21,7 @@ pub(crate) struct LinearDensity {
 }
 
 impl LinearDensity {
-    /// Returns the density that is proportional to a non-negative function, or `None` if the
+    /// The density that is proportional to a non-negative function, or `None` if the
     /// function is zero everywhere.
     pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
         let step = (high - low) / CELLS as f64;
@@ -57,7 +57,7 @@ impl LinearDensity {
         }
     }
 
-    /// Returns the density for a window's profile. Next to the window's border the density is
+    /// The density for a window's profile. Next to the window's border the density is
     /// slightly larger than the profile, so the weights of rays near the border are bounded.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
@@ -72,12 +72,12 @@ impl LinearDensity {
         Self::new([-half, half], inside).unwrap_or_else(even)
     }
 
-    /// Returns the quantile: the coordinate at which the cumulative density equals `share`.
+    /// The quantile: the coordinate at which the cumulative density equals `share`.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         self.draw(share)[0]
     }
 
-    /// Returns the quantile at which the cumulative density equals `share`, and the density at
+    /// The quantile at which the cumulative density equals `share`, and the density at
     /// this quantile.
     pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.ends.len() - 2;
@@ -100,7 +100,7 @@ impl LinearDensity {
         ]
     }
 
-    /// Returns the value of the density; zero outside the interval.
+    /// The value of the density; zero outside the interval.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let at = (t - self.low) / self.step;
         let cells = self.ends.len() - 1;
@@ -128,7 +128,7 @@ const ANYWHERE_SHARE: f64 = 0.04;
 const WIDER: f64 = 1.2;
 
 impl Target {
-    /// Returns the density of aimed points along one coordinate. `profile` is the window's profile
+    /// The density of aimed points along one coordinate. `profile` is the window's profile
     /// along this coordinate.
     pub(crate) fn new(profile: &Profile) -> Self {
         let half = profile.half_width();
@@ -141,7 +141,7 @@ impl Target {
         }
     }
 
-    /// Returns a target coordinate for a uniform random number `share`: small numbers give points
+    /// A target coordinate for a uniform random number `share`: small numbers give points
     /// anywhere on the plane, and larger numbers give points near the window.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         if share >= ANYWHERE_SHARE {
@@ -153,7 +153,7 @@ impl Target {
         self.half * to_side / (1.0 - to_side.abs())
     }
 
-    /// Returns the value of the density.
+    /// The value of the density.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let far = 0.5 / (self.half * (1.0 + t.abs() / self.half).powi(2));
         (1.0 - ANYWHERE_SHARE) * self.near.value(t) + ANYWHERE_SHARE * far

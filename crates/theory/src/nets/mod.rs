@@ -71,16 +71,16 @@ impl RayNode {
 
 /// Light fields whose rays are functions of a point of the unit cube.
 pub(crate) trait Integrand: Sync {
-    /// Returns the number of fields.
+    /// The number of fields.
     fn fields(&self) -> usize {
         1
     }
-    /// Returns how many coordinates of a point the fields depend on. The number is at most
+    /// How many coordinates of a point the fields depend on. The number is at most
     /// [`DIMENSIONS`].
     fn dimensions(&self) -> usize {
         6
     }
-    /// Returns the number of rays per point in each field.
+    /// The number of rays per point in each field.
     fn rays(&self) -> usize {
         1
     }
@@ -91,7 +91,7 @@ pub(crate) trait Integrand: Sync {
 }
 
 impl Predicted {
-    /// Returns the prediction of zero, with a number of derivatives, for the case in which no ray in
+    /// The prediction of zero, with a number of derivatives, for the case in which no ray in
     /// any net carries light.
     pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid, derivatives: usize) -> Self {
         let values = Array2::zeros((picture.bins, picture.bins));
@@ -137,7 +137,7 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ for a small number of rays, to choose the best sampling strategy. A strategy
+/// ‖error‖/‖F‖ for a small number of rays, to choose the best sampling strategy. A strategy
 /// that is best for very few rays may not be best for many. The nets of a trial are not the nets of
 /// predictions; otherwise, rays of large weight would often be absent from both.
 pub(crate) fn trial(
@@ -176,7 +176,7 @@ fn doubled<T>(
     }
 }
 
-/// Returns the end of a prediction: the error of the mean over nets, once the budget is reached.
+/// The end of a prediction: the error of the mean over nets, once the budget is reached.
 fn within(budget: RayBudget) -> impl Fn(&mut [Running], u32) -> Option<f64> {
     move |running, each| {
         let nodes = f64::from(each) * REPLICATES as f64;
@@ -187,7 +187,7 @@ fn within(budget: RayBudget) -> impl Fn(&mut [Running], u32) -> Option<f64> {
     }
 }
 
-/// Returns the mean of each field over nets, to a relative error of [`DERIVATIVE_ERROR`] or with
+/// The mean of each field over nets, to a relative error of [`DERIVATIVE_ERROR`] or with
 /// a number of nodes in proportion to that of the prediction. No nodes are added to a field that is
 /// accurate.
 ///
@@ -349,7 +349,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
     }
 }
 
-/// Returns the mean of several slices on one grid.
+/// The mean of several slices on one grid.
 ///
 /// # Panics
 /// Panics if there are no slices.
@@ -365,7 +365,7 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
 }
 
 impl NetMean {
-    /// Returns the mean of sums over independent nets.
+    /// The mean of sums over independent nets.
     pub(crate) fn new<'a>(sums: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> Self {
         Self {
             slices: mean(sums.clone()),
@@ -374,7 +374,7 @@ impl NetMean {
     }
 }
 
-/// Returns ‖σ‖ and ‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
+/// ‖σ‖ and ‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
 /// (12)).
 fn error_and_norm<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> [f64; 2] {
     let r = slices.len() as f64;

@@ -7,7 +7,7 @@ use etendue_field::TwoPlane;
 /// A light field at a plane as weighted rays in independent nets. Each net represents the complete
 /// light field.
 pub trait RayNets: Sync {
-    /// Returns the number of nets. A single net has no statistical error.
+    /// The number of nets. A single net has no statistical error.
     fn count(&self) -> usize;
 
     /// Calls `each` with the rays of a net and their contributions to the windowed radiance space.
@@ -25,7 +25,7 @@ pub(crate) struct SampledNets<'a, I> {
 const MAX_NODES: u32 = 1 << 29;
 
 impl<'a, I: Integrand> SampledNets<'a, I> {
-    /// Returns the number of nodes per net: the largest power of two that a budget allows.
+    /// The number of nodes per net: the largest power of two that a budget allows.
     pub(crate) fn new(integrand: &'a I, budget: RayBudget) -> Self {
         let nodes = power_of_two(budget.nodes / REPLICATES as f64, [1, MAX_NODES]);
         Self { integrand, nodes }

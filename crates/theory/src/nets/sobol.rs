@@ -33,7 +33,7 @@ pub(crate) struct NetPoints {
 }
 
 impl NetPoints {
-    /// Returns the net scrambled with key `replicate`. The given number of coordinates of each
+    /// The net scrambled with key `replicate`. The given number of coordinates of each
     /// point are computed; the remaining coordinates are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
@@ -48,7 +48,7 @@ impl NetPoints {
         }
     }
 
-    /// Returns the next point. Any 2ᵐ consecutive points form a net if the index of the first is a
+    /// The next point. Any 2ᵐ consecutive points form a net if the index of the first is a
     /// multiple of 2ᵐ.
     pub(crate) fn point(&mut self) -> [f64; DIMENSIONS] {
         let mut point = [0.0; DIMENSIONS];
@@ -88,7 +88,7 @@ fn mixed_bits(mut x: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Returns the index of the cell that contains `x` if (0, 1) is divided into n equal cells.
+    /// The index of the cell that contains `x` if (0, 1) is divided into n equal cells.
     fn cell(x: f64, n: usize) -> usize {
         (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
     }

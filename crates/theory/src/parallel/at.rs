@@ -6,7 +6,7 @@ use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::slope::Slope;
 use etendue_field::{Complex, Window};
 
-/// Returns the spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
+/// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
 /// The spectrum is brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where each factor F is the transform
 /// of a convex polygon and is evaluated separately. The result is exact for uniform rectangles,
@@ -27,7 +27,7 @@ pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
 }
 
 impl Expansion {
-    /// Returns the spectrum at one frequency.
+    /// The spectrum at one frequency.
     pub(crate) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
         let k = [[x, u], [y, v]];
         let products = self.products.iter();

@@ -134,7 +134,7 @@ pub(crate) struct ChainSegment<'a> {
 }
 
 impl Chain {
-    /// Returns the segment of the chain with its light, masks and reflection.
+    /// The segment of the chain with its light, masks and reflection.
     ///
     /// # Panics
     /// Panics if an operator other than travel follows a diffuse reflection.
@@ -172,18 +172,18 @@ impl Chain {
 }
 
 impl ChainSegment<'_> {
-    /// Returns the shapes of the light: a single shape, or an empty slice for a point light.
+    /// The shapes of the light: a single shape, or an empty slice for a point light.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
         self.light.shape.as_slice()
     }
 
-    /// Returns the total power p of the factor (1 + u² + v²)^p: the power of the light, minus 2
+    /// The total power p of the factor (1 + u² + v²)^p: the power of the light, minus 2
     /// for each cosine operator.
     pub(crate) fn slope_power(&self) -> f64 {
         self.light.power - 2.0 * f64::from(self.cosines)
     }
 
-    /// Returns the shapes in each plane that has edges: first the shapes of the light, then the
+    /// The shapes in each plane that has edges: first the shapes of the light, then the
     /// shapes of each opaque mask, or the hole of each aperture.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let masks = self.layers.iter().map(|layer| layer.mask);

@@ -98,7 +98,7 @@ impl<'a> Corners<'a> {
         }
     }
 
-    /// Returns the windowed transforms of all polygons along a row, [polygon, n].
+    /// The windowed transforms of all polygons along a row, [polygon, n].
     pub(crate) fn row(&self, row: &FrequencyRow) -> Vec<Complex> {
         let count = row.count();
         let polygons = &self.section.polygons;
@@ -210,7 +210,7 @@ impl SectionWave {
     }
 }
 
-/// Returns the length of the longest edge along a direction that fits into the square |p| < 1. The
+/// The length of the longest edge along a direction that fits into the square |p| < 1. The
 /// length is in units of |direction|.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())

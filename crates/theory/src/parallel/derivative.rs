@@ -13,7 +13,7 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// Returns the derivative of the slices with respect to a parameter, per unit of the parameter.
+/// The derivative of the slices with respect to a parameter, per unit of the parameter.
 /// The derivative is a forward difference with a step of at most 10⁻⁴ of the parameter's scale.
 ///
 /// `prediction` must be the slices of this chain under the same window and on the same grid.

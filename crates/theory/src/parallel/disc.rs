@@ -30,7 +30,7 @@ impl Discs {
     }
 }
 
-/// Returns the rectangles into which a shape is split.
+/// The rectangles into which a shape is split.
 pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> {
     match shape {
         Shape::Rectangle(rectangle) => vec![WeightedRectangle::of_rectangle(rectangle)],
@@ -38,7 +38,7 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
     }
 }
 
-/// Returns the rectangles of the sum Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], where t_j = π
+/// The rectangles of the sum Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], where t_j = π
 /// (2j + 1)/4n (docs/theory.md (5b)).
 ///
 /// In an integral over the product of a smooth function and the disc, this sum replaces the disc.

@@ -30,7 +30,7 @@ const MOST_STRIPS: f64 = 64.0;
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
 impl DiscResolution {
-    /// Returns the resolution for spectra up to `frequency`, along position and slope
+    /// The resolution for spectra up to `frequency`, along position and slope
     /// (docs/theory.md, after Eq. 5b).
     pub(crate) fn for_spectrum(
         path: &ChainSegment<'_>,
@@ -125,7 +125,7 @@ impl DiscResolution {
         )
     }
 
-    /// Returns a resolution that splits discs into a quarter more nodes or strips.
+    /// A resolution that splits discs into a quarter more nodes or strips.
     pub(crate) fn finer(&self) -> Self {
         let more = |n: usize| n + n.div_ceil(4);
         Self(
@@ -175,7 +175,7 @@ impl EdgeBandwidth {
         rates
     }
 
-    /// Returns the bandwidth for the edges in a plane. If the window is the only other factor, its
+    /// The bandwidth for the edges in a plane. If the window is the only other factor, its
     /// spectrum is concentrated near zero, so γ is near both Ωx and −Ωu/h. Edges in a plane at
     /// distance g spread the spectrum along Ωu = −g Ωx. The frequencies (Ωx − γ, Ωu + h γ) meet
     /// this line at γ = (Ωu + g Ωx)/(g − h). Large γ are limited, because the spectrum is small at
@@ -193,7 +193,7 @@ impl EdgeBandwidth {
     }
 }
 
-/// Returns the largest radius of the discs among shapes, or 0 if no shape is a disc.
+/// The largest radius of the discs among shapes, or 0 if no shape is a disc.
 fn largest(shapes: &[Shape]) -> f64 {
     let radii = shapes.iter().map(|shape| match shape {
         Shape::Disc(disc) => disc.radius,

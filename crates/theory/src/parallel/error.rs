@@ -66,7 +66,7 @@ mod tests {
         quadrature_error(chain, window, &grid(), &slices)
     }
 
-    /// Returns two errors: for a light that is a disc, and for a disc that blocks a square light.
+    /// Two errors: for a light that is a disc, and for a disc that blocks a square light.
     /// `distances` are the distances of travel before and after the blocker.
     fn errors(profile: fn(f64) -> Profile, radius: f64, distances: [f64; 2]) -> [f64; 2] {
         let round = disc([0.02, 0.01], radius);

@@ -76,9 +76,9 @@ pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The product of the window, the gratings and the factor that depends on slopes, expanded as a
-    /// sum of products of waves of both sections. A factor that depends on slopes has several
-    /// products of waves.
+    /// The window times the gratings times the factor of slopes, expanded as a sum: each term is a
+    /// sum of waves over (x, u) times a sum of waves over (y, v). Only a factor of slopes needs
+    /// several terms.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -106,7 +106,7 @@ impl AxisSection {
         self.unit = self.half[1];
     }
 
-    /// Returns the shear by a distance, which is the change of position per slope, in units of the
+    /// The shear by a distance, which is the change of position per slope, in units of the
     /// window's half-widths.
     fn shear(&self, distance: f64) -> f64 {
         distance * self.half[1] / self.half[0]
@@ -122,7 +122,7 @@ impl AxisSection {
         })
     }
 
-    /// Returns the part of a polygon that contains the rays from a strip. These rays were at
+    /// The part of a polygon that contains the rays from a strip. These rays were at
     /// positions in `extent` (metres) at the given `distance` upstream. Returns `None` if the part
     /// is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
@@ -144,7 +144,7 @@ impl AxisSection {
         index
     }
 
-    /// Returns ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, where k is in cycles per
+    /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, where k is in cycles per
     /// metre and per unit slope. The function computes one polygon transform for each complex
     /// exponential of the waves. The unit is metre · slope, or slope for segments.
     pub(crate) fn value(&self, waves: &[SectionWave], polygon: &Polygon, k: [f64; 2]) -> Complex {
@@ -176,7 +176,7 @@ impl Expansion {
         expansion
     }
 
-    /// Returns an expansion with polygons and terms but without waves, or `None` if the number of
+    /// An expansion with polygons and terms but without waves, or `None` if the number of
     /// polygons or of terms exceeds `most`.
     pub(crate) fn within(
         path: &ChainSegment<'_>,
@@ -189,7 +189,7 @@ impl Expansion {
         fits.then_some(expansion)
     }
 
-    /// Returns the expansion of the window without any light.
+    /// The expansion of the window without any light.
     fn empty(window: &Window) -> Self {
         let sections = [
             AxisSection::new(&window.x, &window.u),
@@ -269,7 +269,7 @@ impl Expansion {
             }));
     }
 
-    /// Returns the product of the terms and the sum of the patches in a plane, without empty
+    /// The product of the terms and the sum of the patches in a plane, without empty
     /// terms.
     fn inside(&mut self, patches: &[WeightedRectangle], distance: f64) -> Vec<PolygonTerm> {
         let mut parts = Vec::new();
@@ -299,7 +299,7 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms after summation along y. If a disc of n × n rectangles is behind another
+    /// The terms after summation along y. If a disc of n × n rectangles is behind another
     /// disc of n × n rectangles, there are n⁴ terms. For one extent along x, the sum along y over
     /// n² of these terms is the same for all n polygons of (x, u) that are clipped to this extent.
     /// Therefore n³ terms with n³ summands are sufficient.
@@ -341,7 +341,7 @@ impl Expansion {
     }
 }
 
-/// Returns the product of the window, the factors that depend on slopes and the gratings along the
+/// The product of the window, the factors that depend on slopes and the gratings along the
 /// path, expanded in waves.
 fn products(
     path: &ChainSegment<'_>,
@@ -368,7 +368,7 @@ fn products(
     slope.parts.iter().map(product).collect()
 }
 
-/// Returns the rectangles of an opaque mask, or the rectangles of the hole of an aperture. Discs are
+/// The rectangles of an opaque mask, or the rectangles of the hole of an aperture. Discs are
 /// split by the given method.
 ///
 /// # Panics

@@ -114,7 +114,7 @@ impl Harmonics {
         Some(Self { expansion, tables })
     }
 
-    /// Returns the number of products that are summed for each frequency.
+    /// The number of products that are summed for each frequency.
     #[must_use]
     pub fn terms(&self) -> usize {
         self.expansion.terms.len() * self.tables.len()
@@ -184,7 +184,7 @@ impl HarmonicTable {
         }
     }
 
-    /// Returns the factors of all polygons at the given harmonics of position and slope.
+    /// The factors of all polygons at the given harmonics of position and slope.
     fn at(&self, harmonic: [isize; 2]) -> &[Complex] {
         let [i, n] = [0, 1].map(|axis| {
             let index = self.half[axis].checked_add_signed(harmonic[axis]);
@@ -211,7 +211,7 @@ struct Folds {
 }
 
 impl Folds {
-    /// Returns the number of harmonics on either side of zero that contribute to the table,
+    /// The number of harmonics on either side of zero that contribute to the table,
     /// including aliases.
     fn reach(self) -> usize {
         match self.folded {
@@ -220,7 +220,7 @@ impl Folds {
         }
     }
 
-    /// Returns the harmonics that alias to the harmonic at `index`, each with its factor.
+    /// The harmonics that alias to the harmonic at `index`, each with its factor.
     fn of(self, index: usize) -> impl Iterator<Item = (f64, f64)> {
         let (half, folds) = (self.half as f64, f64::from(FOLDS));
         let own = index as f64 - half;
@@ -238,7 +238,7 @@ impl Folds {
         })
     }
 
-    /// Returns the same harmonics as [`of`](Self::of), as indices among all harmonics within
+    /// The same harmonics as [`of`](Self::of), as indices among all harmonics within
     /// [`reach`](Self::reach).
     fn indices(self, index: usize) -> impl Iterator<Item = (usize, f64)> {
         let reach = self.reach() as f64;

@@ -9,7 +9,7 @@ use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
-    /// Returns a chain whose final light field is the final light field of this chain after the map
+    /// A chain whose final light field is the final light field of this chain after the map
     /// u' = u + `power` x. A thin lens of focal length −1/power applies this map, and a curved
     /// mirror at normal incidence applies it to first order.
     ///
@@ -60,7 +60,7 @@ impl Chain {
     }
 }
 
-/// Returns the operator for travel between two images; `distance` may be negative.
+/// The operator for travel between two images; `distance` may be negative.
 fn travel(distance: f64) -> Operator {
     Operator::Travel {
         from: "image".to_owned(),
@@ -135,7 +135,7 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{Profile, Window};
 
-    /// Returns a window that contains all slopes of the chain and part of its positions.
+    /// A window that contains all slopes of the chain and part of its positions.
     fn open(half: f64) -> Window {
         Window {
             u: Profile::Box(3.0),

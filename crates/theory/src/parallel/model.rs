@@ -151,7 +151,7 @@ impl Chain {
         }
     }
 
-    /// Returns ∫ L W, the light in the window if all occluders are removed.
+    /// ∫ L W, the light in the window if all occluders are removed.
     fn unblocked(&self, window: &Window) -> f64 {
         let mut open = self.clone();
         let is_mask = |operator: &Operator| matches!(operator, Operator::Visibility { .. });
@@ -161,7 +161,7 @@ impl Chain {
 }
 
 impl Parameter {
-    /// Returns the index of the operator to which the parameter belongs, or `None` for parameters
+    /// The index of the operator to which the parameter belongs, or `None` for parameters
     /// of the source.
     fn operator(self) -> Option<usize> {
         match self {

@@ -44,7 +44,7 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// Returns the square |position| < 1, |slope| < 1. `edges` contains the indices of two
+    /// The square |position| < 1, |slope| < 1. `edges` contains the indices of two
     /// directions: first the direction of the sides with constant slope, then the direction of the
     /// sides with constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
@@ -60,7 +60,7 @@ impl Polygon {
         ])
     }
 
-    /// Returns the segment position = `shear` · slope inside the square; `edge` is the index of
+    /// The segment position = `shear` · slope inside the square; `edge` is the index of
     /// the direction (shear, 1).
     pub(crate) fn segment(shear: f64, edge: usize) -> Self {
         let end = 1.0 / shear.abs().max(1.0);
@@ -79,13 +79,13 @@ impl Polygon {
         &self.0
     }
 
-    /// Returns each corner with its successor.
+    /// Each corner with its successor.
     fn sides(&self) -> impl Iterator<Item = (Vertex, Vertex)> {
         let next = self.0.iter().cycle().skip(1);
         self.0.iter().copied().zip(next.copied())
     }
 
-    /// Returns the part of the polygon where `normal`·p ≤ `bound`; `edge` is the index of the
+    /// The part of the polygon where `normal`·p ≤ `bound`; `edge` is the index of the
     /// direction of the cut (Sutherland and Hodgman 1974).
     pub(crate) fn clipped(&self, normal: [f64; 2], bound: f64, edge: usize) -> Self {
         if self.is_segment() {
@@ -111,7 +111,7 @@ impl Polygon {
         Self(kept)
     }
 
-    /// Returns the part of a segment where `normal`·p ≤ `bound`.
+    /// The part of a segment where `normal`·p ≤ `bound`.
     fn shortened(&self, normal: [f64; 2], bound: f64) -> Self {
         let [a, b] = [self.0[0], self.0[1]];
         let inside = [a, b].map(|corner| bound - dot(normal, corner.at));
@@ -135,7 +135,7 @@ impl Polygon {
         })
     }
 
-    /// Returns the part of the polygon where `low` ≤ position − `shear` · slope ≤ `high`; `edge`
+    /// The part of the polygon where `low` ≤ position − `shear` · slope ≤ `high`; `edge`
     /// is the index of the direction (shear, 1).
     pub(crate) fn strip(&self, shear: f64, [low, high]: [f64; 2], edge: usize) -> Self {
         self.clipped([1.0, -shear], high, edge)
@@ -151,7 +151,7 @@ impl Polygon {
             .map(|pair| [pair[0], pair[1]].map(|corner| minus(corner.at, self.0[0].at)))
     }
 
-    /// Returns the area of a polygon, or the range of slopes of a segment.
+    /// The area of a polygon, or the range of slopes of a segment.
     pub(crate) fn measure(&self) -> f64 {
         if self.is_segment() {
             return minus(self.0[1].at, self.0[0].at)[1];
@@ -159,7 +159,7 @@ impl Polygon {
         self.triangles().map(|[b, c]| 0.5 * cross(b, c)).sum()
     }
 
-    /// Returns the Fourier transform F(k) = ∫∫ exp(−2πi k·p) over the polygon, accurate to about
+    /// The Fourier transform F(k) = ∫∫ exp(−2πi k·p) over the polygon, accurate to about
     /// 1e-14; F(0) is the polygon's measure.
     pub(crate) fn transform(&self, k: [f64; 2]) -> Complex {
         let Some(first) = self.0.first() else {
@@ -176,7 +176,7 @@ impl Polygon {
         }
     }
 
-    /// Returns the transform of a polygon. For a parallelogram with sides a and b and centre c, the
+    /// The transform of a polygon. For a parallelogram with sides a and b and centre c, the
     /// transform is exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area. This formula needs half as
     /// many exponentials as [`transform`](Self::transform).
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
@@ -192,7 +192,7 @@ impl Polygon {
         cis(-TAU * dot(k, center)) * size
     }
 
-    /// Returns the transform of a segment e with midpoint c, which is exp(−2πi k·c) sinc(k·e) times
+    /// The transform of a segment e with midpoint c, which is exp(−2πi k·c) sinc(k·e) times
     /// the range of slopes.
     fn segment_transform(&self, k: [f64; 2]) -> Complex {
         let [a, b] = [self.0[0].at, self.0[1].at];
@@ -201,7 +201,7 @@ impl Polygon {
         cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
     }
 
-    /// Returns the transform by the divergence theorem with the field k exp(−2πi k·p): i/(2π|k|²) Σ
+    /// The transform by the divergence theorem with the field k exp(−2πi k·p): i/(2π|k|²) Σ
     /// (n·k) exp(−2πi k·c) sinc(k·e). The sum is over the edges e, with midpoints c and outward
     /// normals n = (e_y, −e_x).
     fn edge_form(&self, k: [f64; 2]) -> Complex {
@@ -214,7 +214,7 @@ impl Polygon {
         sum * Complex::new(0.0, 1.0 / (TAU * dot(k, k)))
     }
 
-    /// Returns the transform about the first corner. For each triangle, the transform is a power
+    /// The transform about the first corner. For each triangle, the transform is a power
     /// series in the phases β and γ of the other two corners: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!,
     /// where hₙ = βⁿ + βⁿ⁻¹γ + … + γⁿ.
     fn series(&self, k: [f64; 2]) -> Complex {
@@ -249,7 +249,7 @@ mod tests {
         [7.0, -0.5],
     ];
 
-    /// Returns the transform of the square |p| < 1.
+    /// The transform of the square |p| < 1.
     fn square_transform(k: [f64; 2]) -> f64 {
         4.0 * sinc(2.0 * k[0]) * sinc(2.0 * k[1])
     }

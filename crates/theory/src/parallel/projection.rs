@@ -24,7 +24,7 @@ const NODES_PER_CYCLE: f64 = 5.0;
 /// by less than 2 %. Several gratings are undersampled, because their product may have a slow beat.
 const MOST_NODES: f64 = 200.0;
 
-/// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
+/// The windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
 /// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at frequency
 /// zero. Each polygon is clipped to each cell, and the window is integrated over the clipped
@@ -87,7 +87,7 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<CellDensity> {
         .collect()
 }
 
-/// Returns the factor of each polygon of (x, u): the integral over y and v of the terms with this
+/// The factor of each polygon of (x, u): the integral over y and v of the terms with this
 /// polygon, multiplied by the given waves in (y, v).
 fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
     let [x, y] = &expansion.sections;
@@ -149,7 +149,7 @@ fn gratings<'a>(path: &ChainSegment<'a>, grid: &ProjectionGrid) -> CellGratings<
     }
 }
 
-/// Returns the number of nodes for the picture of a path.
+/// The number of nodes for the picture of a path.
 pub(crate) fn nodes_of_cells(path: &ChainSegment<'_>, grid: &ProjectionGrid) -> usize {
     gratings(path, grid).nodes
 }
@@ -176,12 +176,12 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Returns the coordinate of the lower edge of the cells with index `i` along an axis.
+    /// The coordinate of the lower edge of the cells with index `i` along an axis.
     fn edge(&self, i: usize, axis: usize) -> f64 {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Returns the values of all cells in slope bin `j`, one for each position bin. The value of a
+    /// The values of all cells in slope bin `j`, one for each position bin. The value of a
     /// cell is the integral of density · W over the cell, summed over polygons.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
@@ -203,7 +203,7 @@ impl<'a> Cells<'a> {
         sums
     }
 
-    /// Returns the range of position bins that a polygon overlaps.
+    /// The range of position bins that a polygon overlaps.
     fn touched(&self, polygon: &Polygon) -> std::ops::Range<usize> {
         let n = self.bins as f64;
         if polygon.corners().is_empty() {
@@ -220,7 +220,7 @@ impl<'a> Cells<'a> {
         first..whole(high.ceil()).max((first + 1).min(self.bins))
     }
 
-    /// Returns ∫∫ W over a polygon that lies within a cell; `slope` is the factor of W that
+    /// ∫∫ W over a polygon that lies within a cell; `slope` is the factor of W that
     /// depends on u.
     fn integral(&self, polygon: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let Some(first) = polygon.corners().first() else {
@@ -235,7 +235,7 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// Returns ∫ W along a segment, divided by its length.
+    /// ∫ W along a segment, divided by its length.
     fn mean_along(&self, segment: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let [a, b] = [0, 1].map(|end| segment.corners()[end].at);
         let nodes = self.nodes.iter();
@@ -247,7 +247,7 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square. The result is half the
+    /// ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square. The result is half the
     /// mean of W over the triangle with the vertices p, p + b and p + c.
     fn mean(&self, p: [f64; 2], b: [f64; 2], c: [f64; 2], slope: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
@@ -272,7 +272,7 @@ impl<'a> Cells<'a> {
         along.value(x) * slope(u) * mean * seen.product::<f64>()
     }
 
-    /// Returns the cosine series Σ termsₙ cos(2π n f u) at u, by Clenshaw's recurrence.
+    /// The cosine series Σ termsₙ cos(2π n f u) at u, by Clenshaw's recurrence.
     fn sum(&self, terms: &[f64], u: f64) -> f64 {
         let cos = libm::cos(TAU * self.series * u);
         let (mut next, mut last) = (0.0, 0.0);
@@ -373,7 +373,7 @@ mod tests {
         }
     }
 
-    /// Returns the mean of f over n × n points in the box with the given centre and half-widths.
+    /// The mean of f over n × n points in the box with the given centre and half-widths.
     fn mean(n: u32, center: [f64; 2], half: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
         let place = |i: u32, k: usize| {
             center[k] + half[k] * ((f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0)

@@ -19,7 +19,7 @@ use etendue_transform::SliceTransform;
 use ndarray::Array2;
 
 impl Chain {
-    /// Returns the rays of the light, if the light is a list of rays.
+    /// The rays of the light, if the light is a list of rays.
     pub(crate) fn given(&self) -> Option<&RayLight> {
         match &self.source.light {
             Light::Rays { rays } => Some(rays),
@@ -35,7 +35,7 @@ enum RayStep<'a> {
     Cosine,
 }
 
-/// Returns the slices and the picture of the rays that pass through a chain.
+/// The slices and the picture of the rays that pass through a chain.
 ///
 /// # Panics
 /// Panics if the chain has a diffuse reflection.
@@ -117,7 +117,7 @@ fn step(operator: &Operator) -> RayStep<'_> {
     }
 }
 
-/// Returns a ray at the end of a chain and the ray's contribution to the windowed light field, or
+/// A ray at the end of a chain and the ray's contribution to the windowed light field, or
 /// `None` if this contribution is zero.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,

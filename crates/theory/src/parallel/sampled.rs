@@ -11,7 +11,7 @@ use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Si
 use glam::DVec3;
 
 impl Chain {
-    /// Returns the prediction by nets of rays, with derivatives with respect to some parameters.
+    /// The prediction by nets of rays, with derivatives with respect to some parameters.
     ///
     /// # Panics
     /// Panics if the chain has no such parameter.
@@ -31,7 +31,7 @@ impl Chain {
         self.followed(over.0).predicted(&moved, over, budget)
     }
 
-    /// Returns the chain as a path, which has a flat surface that scatters if the chain ends in a
+    /// The chain as a path, which has a flat surface that scatters if the chain ends in a
     /// diffuse reflection.
     pub(super) fn followed(&self, window: &Window) -> Observed {
         let path = self.path();
@@ -72,7 +72,7 @@ impl Chain {
     }
 }
 
-/// Returns a width that is larger than the part of the receiver seen through a window at the given
+/// A width that is larger than the part of the receiver seen through a window at the given
 /// distance.
 fn seen(window: &Window, distance: f64) -> f64 {
     let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());

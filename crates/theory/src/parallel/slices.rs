@@ -14,7 +14,7 @@ use etendue_field::{Complex, SliceGrid, Slices, Window};
 /// as exactly zero. Up to rounding errors, such azimuths are π/2 and 0.
 const ORTHOGONAL: f64 = 1e-15;
 
-/// Returns the slices of the spectrum on a grid.
+/// The slices of the spectrum on a grid.
 ///
 /// The result is the same for any number of threads. The slices differ from [`at`](crate::at) by
 /// less than 1e-10 of the largest value or, if the chain has discs, by the quadrature error of discs.
@@ -25,7 +25,7 @@ pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
     slices_at_fineness(&path, window, grid, &fineness(&path, window, grid))
 }
 
-/// Returns the resolution to which discs are split for spectra on a grid.
+/// The resolution to which discs are split for spectra on a grid.
 pub(crate) fn fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -34,7 +34,7 @@ pub(crate) fn fineness(
     DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 
-/// Returns the slices of a chain whose discs are split at the given resolution.
+/// The slices of a chain whose discs are split at the given resolution.
 pub(crate) fn slices_at_fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -82,7 +82,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Returns the factors of all polygons of section `axis` in the row at ρ, as [polygon, ν].
+    /// The factors of all polygons of section `axis` in the row at ρ, as [polygon, ν].
     /// `along` is the cosine of the angle between the azimuth and the axis.
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
@@ -154,7 +154,7 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Light, Profile, Rectangle};
 
-    /// Returns a grid that contains the frequency shifts of Hann profiles of half-width 1/2, and
+    /// A grid that contains the frequency shifts of Hann profiles of half-width 1/2, and
     /// the lines k·d = 0 for distances 1 and 2, on which the contributions of corners cancel.
     fn singular_grid(azimuths: usize, half: usize) -> SliceGrid {
         let axis = FrequencyAxis { half, spacing: 0.5 };
@@ -206,7 +206,7 @@ mod tests {
         ]
     }
 
-    /// Returns the largest difference between `slices` and `at`, divided by the largest value.
+    /// The largest difference between `slices` and `at`, divided by the largest value.
     fn difference(chain: &Chain, window: &Window, grid: &SliceGrid) -> f64 {
         let path = chain.path();
         let fast = slices(chain, window, grid);

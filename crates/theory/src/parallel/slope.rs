@@ -92,7 +92,7 @@ impl Slope {
     }
 }
 
-/// Returns the sum of cosine terms at `t`, which must be inside the window.
+/// The sum of cosine terms at `t`, which must be inside the window.
 fn sum(terms: &[CosineTerm], t: f64) -> f64 {
     let values = terms
         .iter()
@@ -100,7 +100,7 @@ fn sum(terms: &[CosineTerm], t: f64) -> f64 {
     values.sum()
 }
 
-/// Returns Gauss nodes on (0, half).
+/// Gauss nodes on (0, half).
 fn nodes(half: f64) -> Vec<f64> {
     let rule = gauss_legendre(NODES).into_iter();
     rule.map(|(x, _)| 0.5 * half * (x + 1.0)).collect()
@@ -258,7 +258,7 @@ fn remove(q: &[f64], column: &mut [f64]) -> f64 {
     along
 }
 
-/// Returns the solution of an upper triangular system whose matrix is given by columns.
+/// The solution of an upper triangular system whose matrix is given by columns.
 fn solve(triangle: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
     for n in (0..right.len()).rev() {
         right[n] /= triangle[n][n];
@@ -274,12 +274,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Returns the largest absolute value of a slice of numbers.
+/// The largest absolute value of a slice of numbers.
 fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Returns the root mean square of the difference between the function and the sum of `parts`,
+/// The root mean square of the difference between the function and the sum of `parts`,
 /// divided by the root mean square of the function.
 fn residual(
     nodes: &[Vec<f64>; 2],
@@ -305,7 +305,7 @@ fn residual(
 mod tests {
     use super::*;
 
-    /// Returns the largest error at points between the nodes, the number of products, and the
+    /// The largest error at points between the nodes, the number of products, and the
     /// number of terms.
     fn check(profiles: [Profile; 2], power: f64) -> (f64, usize, usize) {
         let slope = Slope::new([&profiles[0], &profiles[1]], power);

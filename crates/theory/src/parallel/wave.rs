@@ -42,7 +42,7 @@ impl SectionWave {
         }
     }
 
-    /// Returns the product of a cosine series in position and a cosine series in slope. Frequencies
+    /// The product of a cosine series in position and a cosine series in slope. Frequencies
     /// are in cycles per metre and per unit slope.
     pub(crate) fn of_terms(terms: [&[CosineTerm]; 2], half: [f64; 2]) -> Vec<Self> {
         let along = |axis: usize| -> Vec<Self> {
@@ -56,7 +56,7 @@ impl SectionWave {
         Self::products(&along(0), &along(1))
     }
 
-    /// Returns the grating ½ (1 + m cos(2π f t + p)) with t = x − `distance` · u, in the
+    /// The grating ½ (1 + m cos(2π f t + p)) with t = x − `distance` · u, in the
     /// coordinates of the plane (docs/theory.md (5c)).
     pub(crate) fn of_grating(grating: &Grating, distance: f64, half: [f64; 2]) -> [Self; 2] {
         let f = grating.frequency;
@@ -67,13 +67,13 @@ impl SectionWave {
         ]
     }
 
-    /// Returns the product of two sums of waves.
+    /// The product of two sums of waves.
     pub(crate) fn products(a: &[Self], b: &[Self]) -> Vec<Self> {
         let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
         pairs.flat_map(|(a, b)| a.times(b)).collect()
     }
 
-    /// Returns the product of two waves by cos a cos b = ½ cos(a + b) + ½ cos(a − b). If one of
+    /// The product of two waves by cos a cos b = ½ cos(a + b) + ½ cos(a − b). If one of
     /// the waves is a constant, the product is a single wave.
     fn times(&self, other: &Self) -> Vec<Self> {
         let amplitude = self.amplitude * other.amplitude;
@@ -92,7 +92,7 @@ impl SectionWave {
         is_zero(self.frequency)
     }
 
-    /// Returns the complex exponentials of the wave. A cosine has two of them, and a constant has
+    /// The complex exponentials of the wave. A cosine has two of them, and a constant has
     /// one.
     pub(crate) fn shifts(&self) -> impl Iterator<Item = Shift> {
         let (signs, amplitude) = if self.is_constant() {
@@ -108,7 +108,7 @@ impl SectionWave {
         })
     }
 
-    /// Returns the argument 2π s·p + phase of the cosine at p.
+    /// The argument 2π s·p + phase of the cosine at p.
     pub(crate) fn angle(&self, p: [f64; 2]) -> f64 {
         std::f64::consts::TAU * crate::parallel::polygon::dot(self.frequency, p) + self.phase
     }

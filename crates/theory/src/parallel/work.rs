@@ -61,7 +61,7 @@ fn too_many() -> PredictionWork {
     ))
 }
 
-/// Returns the number of waves of a section in one product of waves.
+/// The number of waves of a section in one product of waves.
 fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     let position: &Profile = [&window.x, &window.y][axis];
     let position = position.cosine_terms().len() as f64;

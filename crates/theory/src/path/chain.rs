@@ -44,7 +44,7 @@ pub struct ScatteringSurface {
     pub outgoing: [f64; 2],
 }
 
-/// Returns the chain of a system up to a plane; `None` if the central ray does not arrive at the
+/// The chain of a system up to a plane; `None` if the central ray does not arrive at the
 /// plane.
 ///
 /// The maps of the chain are the derivatives of the exact rays. Apart from rotations of the axes, the
@@ -61,7 +61,7 @@ pub fn chain(view: &Observed) -> Option<PathChain> {
     })
 }
 
-/// Returns the largest difference between the maps of a chain and the derivatives of the exact
+/// The largest difference between the maps of a chain and the derivatives of the exact
 /// rays, in metres or radians, or as a ratio of these. The difference is zero for the chain that
 /// [`chain`] returns.
 #[must_use]
@@ -72,7 +72,7 @@ pub fn defect(view: &Observed, tried: &PathChain) -> Option<f64> {
 }
 
 impl PathChain {
-    /// Returns the map z' = A z from the light to the plane, for rays that every scatterer reflects
+    /// The map z' = A z from the light to the plane, for rays that every scatterer reflects
     /// in the mirror direction.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {
@@ -84,7 +84,7 @@ impl PathChain {
     }
 }
 
-/// Returns the local coordinates of a point of a surface and of a direction away from the surface.
+/// The local coordinates of a point of a surface and of a direction away from the surface.
 /// `frame` has the axes at the central ray's hit.
 pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
     let at = frame.to_local(point);
@@ -106,6 +106,7 @@ fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
         let hit = surface.hit;
         let arriving = (hit - from).normalize();
         from = hit;
+        // Light changes its direction here, but its spectrum is not convolved.
         if !surface.scatters() {
             continue;
         }
@@ -135,7 +136,7 @@ fn scatterers(view: &Observed) -> Option<Vec<ScatteringSurface>> {
     Some(found)
 }
 
-/// Returns the map from the light or a scatterer to the next scatterer or the plane.
+/// The map from the light or a scatterer to the next scatterer or the plane.
 fn map(view: &Observed, scatterers: &[ScatteringSurface], leg: usize) -> Option<AffineMap<4>> {
     let Observed { system, plane } = view;
     let from = leg.checked_sub(1).map(|before| &scatterers[before]);
@@ -164,7 +165,7 @@ fn map(view: &Observed, scatterers: &[ScatteringSurface], leg: usize) -> Option<
 }
 
 impl ScatteringSurface {
-    /// Returns the ray that leaves a surface with the given local coordinates, which are relative
+    /// The ray that leaves a surface with the given local coordinates, which are relative
     /// to the central ray.
     fn ray(&self, surface: &PathSurface, [s, t, theta, phi]: [f64; 4]) -> Option<LegRay> {
         let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
@@ -179,7 +180,7 @@ impl ScatteringSurface {
     }
 }
 
-/// Returns the direction with a longitude and a latitude about a normal. The angles are measured in
+/// The direction with a longitude and a latitude about a normal. The angles are measured in
 /// the axes of a frame after its D is turned to the normal.
 pub(crate) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);

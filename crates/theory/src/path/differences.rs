@@ -7,15 +7,15 @@ use crate::predicted::Predicted;
 
 /// A light field of a path. Its rays are functions of a point of the unit cube.
 pub(super) trait DrawnField: Sync {
-    /// Returns the path that light follows.
+    /// The path that light follows.
     fn path(&self) -> &PreparedPath<'_>;
 
-    /// Returns the number of coordinates of a point on which a ray depends.
+    /// The number of coordinates of a point on which a ray depends.
     fn dimensions(&self) -> usize {
         6
     }
 
-    /// Returns the ray for a point of the unit cube, or `None` if it does not arrive.
+    /// The ray for a point of the unit cube, or `None` if it does not arrive.
     fn draw(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<RayNode>;
 
     /// Checks whether the field has a first-order chain.
@@ -23,7 +23,7 @@ pub(super) trait DrawnField: Sync {
         false
     }
 
-    /// Returns the ray of the chain and the exact ray for a point of the unit cube.
+    /// The ray of the chain and the exact ray for a point of the unit cube.
     fn beside_chain(&self, _at: &[f64; DIMENSIONS]) -> [Option<RayNode>; 2] {
         [None; 2]
     }
@@ -72,7 +72,7 @@ impl<'a, F: DrawnField> Differences<'a, F> {
         }
     }
 
-    /// Returns a prediction with the differences, which are accurate to about a per cent.
+    /// A prediction with the differences, which are accurate to about a per cent.
     pub(super) fn complete(&self, found: Predicted, over: Over<'_>) -> Predicted {
         let mut means = nets::means(self, (over.0, over.1), &found).into_iter();
         Predicted {

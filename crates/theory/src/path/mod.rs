@@ -134,7 +134,7 @@ pub enum PathKind {
 }
 
 impl PathSystem {
-    /// Returns the system of a light and surfaces, all of which light leaves before the plane. The
+    /// The system of a light and surfaces, all of which light leaves before the plane. The
     /// system has no masks and no obstacles.
     #[must_use]
     pub fn new(light: Light, surfaces: Vec<PathSurface>) -> Self {
@@ -147,26 +147,26 @@ impl PathSystem {
         }
     }
 
-    /// Returns the surfaces that light leaves before the plane.
+    /// The surfaces that light leaves before the plane.
     #[must_use]
     pub fn before_plane(&self) -> &[PathSurface] {
         &self.surfaces[..self.visited]
     }
 
-    /// Returns the masks that the central ray crosses on its first leg of the given length.
+    /// The masks that the central ray crosses on its first leg of the given length.
     pub fn masks_before(&self, length: f64) -> impl DoubleEndedIterator<Item = &PathMask> {
         let masks = self.masks.iter();
         masks.filter(move |mask| 0.0 < mask.distance && mask.distance < length)
     }
 
-    /// Returns the number of surfaces that scatter light before the plane.
+    /// The number of surfaces that scatter light before the plane.
     #[must_use]
     pub fn scatterers(&self) -> usize {
         let visited = self.before_plane().iter();
         visited.filter(|surface| surface.scatters()).count()
     }
 
-    /// Returns the patch and the reflectance of the first surface, which has a BRDF if the path is of
+    /// The patch and the reflectance of the first surface, which has a BRDF if the path is of
     /// the kind [`PathKind::Scattered`].
     ///
     /// # Panics
@@ -184,7 +184,7 @@ impl PathSystem {
 }
 
 impl PathSurface {
-    /// Returns a surface that is the whole of a patch. The central ray meets it at the vertex.
+    /// A surface that is the whole of a patch. The central ray meets it at the vertex.
     #[must_use]
     pub fn new(name: &str, patch: Patch, interaction: Interaction) -> Self {
         Self {
@@ -199,7 +199,7 @@ impl PathSurface {
 }
 
 impl Observed {
-    /// Returns the way in which rays of the path are sampled.
+    /// The way in which rays of the path are sampled.
     #[must_use]
     pub fn kind(&self) -> PathKind {
         let visited = self.system.before_plane();

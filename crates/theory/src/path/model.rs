@@ -153,6 +153,7 @@ impl Model for Observed {
                 None => parameter.change_light(&mut self.system.light, new)?,
             },
         }
+        // A surface that light visits twice has changed at both visits.
         match parameter {
             Parameter::Incidence(i)
             | Parameter::Curvature(i, _)
@@ -166,7 +167,7 @@ impl Model for Observed {
         Some(())
     }
 
-    /// Returns a prediction. Where surfaces scatter, it includes the difference between the
+    /// A prediction. Where surfaces scatter, it includes the difference between the
     /// first-order chain and the exact slices. If the last of these surfaces has a single BRDF, all
     /// light is proportional to its albedo, so the derivative with respect to the albedo is exact.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
@@ -212,7 +213,7 @@ impl Model for Observed {
 }
 
 impl Observed {
-    /// Returns the prediction, with the derivatives between pairs of changed models.
+    /// The prediction, with the derivatives between pairs of changed models.
     pub(crate) fn predicted(
         &self,
         moved: &[ShiftedModels<Self>],
@@ -228,7 +229,7 @@ impl Observed {
         }
     }
 
-    /// Returns what a path of specular surfaces has as parameters, apart from those of its light.
+    /// What a path of specular surfaces has as parameters, apart from those of its light.
     fn specular_parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Vec::new();
@@ -340,7 +341,7 @@ impl Observed {
 }
 
 impl PathSystem {
-    /// Returns the surfaces before the plane, without those that light has visited before.
+    /// The surfaces before the plane, without those that light has visited before.
     fn first_visits(&self) -> impl Iterator<Item = (usize, &PathSurface)> {
         let all = self.before_plane();
         let is_new = |(i, surface): &(usize, &PathSurface)| {
@@ -349,7 +350,7 @@ impl PathSystem {
         all.iter().enumerate().filter(is_new)
     }
 
-    /// Returns the parameters of the obstacles, except an obstacle that is a surface of the path,
+    /// The parameters of the obstacles, except an obstacle that is a surface of the path,
     /// if they are few.
     fn parameters_of_obstacles(&self) -> impl Iterator<Item = Parameter> {
         let obstacles = self.obstacles.iter().enumerate();
@@ -384,7 +385,7 @@ impl PathSystem {
         is_environment && self.masks.is_empty() && self.obstacles.is_empty()
     }
 
-    /// Returns the start and the direction of the central ray's leg with the given index.
+    /// The start and the direction of the central ray's leg with the given index.
     fn leg(&self, leg: usize) -> Option<(DVec3, DVec3)> {
         if leg == 0 {
             return Some((DVec3::ZERO, DVec3::Z));
@@ -393,14 +394,14 @@ impl PathSystem {
         Some((hit.leaving.origin, hit.leaving.d))
     }
 
-    /// Returns the last surface that scatters light before the plane.
+    /// The last surface that scatters light before the plane.
     fn last_scatterer(&self) -> Option<usize> {
         self.before_plane().iter().rposition(PathSurface::scatters)
     }
 }
 
 impl PathSurface {
-    /// Returns the albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
+    /// The albedo of the surface, if the surface scatters light. For a sum of BRDFs, this
     /// is the albedo of the first BRDF.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
@@ -410,7 +411,7 @@ impl PathSurface {
         }
     }
 
-    /// Returns the exponent or the roughness of the surface's lobe, with the name of that
+    /// The exponent or the roughness of the surface's lobe, with the name of that
     /// parameter.
     fn lobe_mut(&mut self) -> Option<(&'static str, &mut f64)> {
         match &mut self.interaction {
@@ -428,7 +429,7 @@ impl PathSurface {
     }
 }
 
-/// Returns a patch's frame after a turn about B at the central ray's hit point. The turn increases
+/// A patch's frame after a turn about B at the central ray's hit point. The turn increases
 /// the angle of incidence θ₀ by `by`.
 fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);

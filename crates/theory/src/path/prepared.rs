@@ -13,7 +13,7 @@ pub(crate) struct PreparedPath<'a> {
     occluders: Vec<(BoundingSphere, &'a PathSurface)>,
 }
 
-/// Returns the fraction of a ray's radiance that passes a mask, from the index of the mask and the
+/// The fraction of a ray's radiance that passes a mask, from the index of the mask and the
 /// point (x, y) where the ray crosses the mask.
 pub(crate) type AtMask<'b> = &'b mut dyn FnMut(usize, [f64; 2]) -> f64;
 
@@ -47,12 +47,12 @@ impl<'a> PreparedPath<'a> {
         }
     }
 
-    /// Returns the function that tells what passes the masks of this system.
+    /// The function that tells what passes the masks of this system.
     pub(crate) fn at_mask(&self) -> impl FnMut(usize, [f64; 2]) -> f64 {
         |mask, [x, y]| self.masks[mask].transmittance(x, y)
     }
 
-    /// Returns the fraction of a ray's radiance that passes the masks of this system at the points
+    /// The fraction of a ray's radiance that passes the masks of this system at the points
     /// where the ray crosses them.
     pub(crate) fn through(&self, crossings: &MaskCrossings) -> f64 {
         let mut at_mask = self.at_mask();
@@ -60,7 +60,7 @@ impl<'a> PreparedPath<'a> {
         passes.product()
     }
 
-    /// Returns the fraction of a ray's radiance that passes masks, obstacles and surfaces over the
+    /// The fraction of a ray's radiance that passes masks, obstacles and surfaces over the
     /// first `length` metres of a leg before the last.
     pub(crate) fn passes(&self, leg: usize, ray: &LegRay, length: f64, at_mask: AtMask<'_>) -> f64 {
         let end = length * (1.0 - ROUNDING);
@@ -87,7 +87,7 @@ impl<'a> PreparedPath<'a> {
         self.passes(leg, ray, length, at_mask)
     }
 
-    /// Returns the fraction of a ray's radiance that passes over the first `length` metres of the
+    /// The fraction of a ray's radiance that passes over the first `length` metres of the
     /// last leg. A ray that returns to the surface that it has left is lost for every plane.
     pub(crate) fn leaves(&self, ray: &LegRay, length: f64, at_mask: AtMask<'_>) -> f64 {
         let leg = self.system.visited;
@@ -100,7 +100,7 @@ impl<'a> PreparedPath<'a> {
         self.passes_beside(leg, ray, length, at_mask)
     }
 
-    /// Returns the fraction of a ray's radiance that passes masks and obstacles over the first `end`
+    /// The fraction of a ray's radiance that passes masks and obstacles over the first `end`
     /// metres of a leg.
     pub(crate) fn passes_beside(
         &self,

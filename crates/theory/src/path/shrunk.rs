@@ -5,7 +5,7 @@ use crate::parameter::scale;
 use etendue_field::{Disc, Light, Pattern, Rectangle, Reflectance, Shape, Weight};
 
 impl PathSystem {
-    /// Returns the system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
+    /// The system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
     /// wide. A Lambertian lobe has no width and stays as it is. Returns `None` if a lobe stays as it
     /// is and the light that it receives does not become narrower, which is so for an environment
     /// and between several surfaces.
@@ -62,7 +62,7 @@ fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
     have_width
 }
 
-/// Returns a light `factor` times as large, about the central ray.
+/// A light `factor` times as large, about the central ray.
 fn shrunk_light(light: &Light, factor: f64) -> Light {
     let mut light = light.clone();
     match &mut light {

@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 impl PathSurface {
-    /// Returns the event at a specular surface.
+    /// The event at a specular surface.
     #[must_use]
     pub fn event(&self) -> Option<Specular> {
         match self.interaction {
@@ -25,7 +25,7 @@ impl PathSurface {
         self.event().is_none()
     }
 
-    /// Returns the parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
+    /// The parameters of the rim of surface `i`. A patch that osculates a mesh has no rim.
     pub(super) fn rim(&self, i: usize) -> impl Iterator<Item = Parameter> + use<> {
         let [sizes, positions] = match self.extent {
             PatchExtent::Rectangle(_) => [2, 2],
@@ -36,14 +36,14 @@ impl PathSurface {
         sizes.chain((0..positions).map(move |axis| Parameter::SurfacePosition(i, axis)))
     }
 
-    /// Returns the distances beyond `start` at which a ray meets the surface.
+    /// The distances beyond `start` at which a ray meets the surface.
     pub(crate) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
         let ray = *ray;
         let inside = move |t: &f64| *t > start && self.holds(ray.at(*t));
         ray.hits(&self.patch).filter(inside)
     }
 
-    /// Returns the first distance beyond `start` at which a ray meets the surface.
+    /// The first distance beyond `start` at which a ray meets the surface.
     pub(crate) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
@@ -57,17 +57,17 @@ impl PathSurface {
         2.0 * at.x.abs() <= size[0] && 2.0 * at.y.abs() <= size[1]
     }
 
-    /// Returns the first point where a ray meets the surface.
+    /// The first point where a ray meets the surface.
     pub(crate) fn met(&self, ray: &LegRay) -> Option<DVec3> {
         Some(ray.at(self.first(ray, ray.start())?))
     }
 
-    /// Returns the continuation of a ray after the surface; `None` if the ray is lost.
+    /// The continuation of a ray after the surface; `None` if the ray is lost.
     pub(crate) fn follow(&self, ray: &LegRay) -> Option<LegRay> {
         self.turned(ray, self.met(ray)?)
     }
 
-    /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
+    /// The continuation of a ray that meets a specular surface at a point; `None` if the
     /// surface scatters light, or if a refracting surface totally reflects the ray.
     pub(crate) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let event = self.event()?;
@@ -76,7 +76,7 @@ impl PathSurface {
         Some(LegRay { point, direction })
     }
 
-    /// Returns the normal on the side where light arrives along a direction and is scattered.
+    /// The normal on the side where light arrives along a direction and is scattered.
     /// Returns `None` if this side is black.
     pub(crate) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
         let normal = normal(&self.patch, point)?;
@@ -87,7 +87,7 @@ impl PathSurface {
         }
     }
 
-    /// Returns the sum of the function `of` over the BRDFs of a scattering surface. Each BRDF is
+    /// The sum of the function `of` over the BRDFs of a scattering surface. Each BRDF is
     /// multiplied by its weight at a point.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
@@ -108,7 +108,7 @@ impl PathSurface {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
-    /// Returns the BRDF that the chain uses. `angles` contains the longitude and latitude of two
+    /// The BRDF that the chain uses. `angles` contains the longitude and latitude of two
     /// directions: first of the direction from which light arrives, then of the direction towards
     /// which it leaves.
     pub(crate) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
@@ -116,7 +116,7 @@ impl PathSurface {
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))
     }
 
-    /// Returns the standard deviation of the narrowest lobe at a point, in radians; `None` for a
+    /// The standard deviation of the narrowest lobe at a point, in radians; `None` for a
     /// diffuse surface.
     pub(crate) fn width(&self, point: DVec3) -> Option<f64> {
         let Interaction::Reflects(reflectance) = &self.interaction else {

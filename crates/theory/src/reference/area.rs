@@ -43,7 +43,7 @@ fn square_light_in_4d() {
     assert_close("closed form", deviation(4, pairs));
 }
 
-/// Returns the centres and the width of the strips of a block.
+/// The centres and the width of the strips of a block.
 fn strips(block: &Value) -> (Vec<f64>, f64) {
     let strips = &block["strips"];
     let centers = samples(&strips["centres"]).iter().map(number).collect();

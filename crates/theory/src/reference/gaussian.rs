@@ -73,7 +73,7 @@ pub(crate) struct CosineGrating {
 }
 
 impl CosineGrating {
-    /// Returns the terms of the Fourier series, each as (frequency, coefficient).
+    /// The terms of the Fourier series, each as (frequency, coefficient).
     #[must_use]
     pub(crate) fn lines(&self) -> [(f64, Complex); 3] {
         let side = Complex::from_polar(0.25 * self.modulation, self.phase);
@@ -85,7 +85,7 @@ impl CosineGrating {
     }
 }
 
-/// Returns the windowed spectrum of the field |x − D v| < w/2 of an area light of width w at
+/// The windowed spectrum of the field |x − D v| < w/2 of an area light of width w at
 /// distance D. The spectrum is q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω
 /// = Ωv + DΩx, q = D²/a² + 1/b², P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
 ///
@@ -110,7 +110,7 @@ pub(crate) fn area_light(
     integral * (libm::exp(-PI * omega * omega / q) / q.sqrt())
 }
 
-/// Returns the windowed spectrum of the field δ(x − D v) of a point light at distance D: q^(−1/2)
+/// The windowed spectrum of the field δ(x − D v) of a point light at distance D: q^(−1/2)
 /// exp(−πω²/q), which is also a factor of the area light's spectrum (docs/theory.md (20)).
 #[must_use]
 pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -> f64 {
@@ -119,7 +119,7 @@ pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -
     libm::exp(-PI * omega * omega / travelled.q) / travelled.q.sqrt()
 }
 
-/// Returns the windowed spectrum of an area light of width w with the lobe exp(−πv²/c²) at distance
+/// The windowed spectrum of an area light of width w with the lobe exp(−πv²/c²) at distance
 /// D. The lobe narrows the window: 1/b² becomes 1/b² + 1/c².
 #[must_use]
 pub(crate) fn spot(
@@ -133,7 +133,7 @@ pub(crate) fn spot(
     area_light(width, distance, &GaussianWindow { a: window.a, b }, k)
 }
 
-/// Returns the 4D spectrum of a disc of radius R at distance D, under a window with the widths a
+/// The 4D spectrum of a disc of radius R at distance D, under a window with the widths a
 /// and b along both axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, where ω and Q are
 /// vectors (docs/theory.md (21)).
 ///
@@ -167,7 +167,7 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// Returns three spectra of a field: the first without a blocker, the second with x < 0 blocked,
+/// Three spectra of a field: the first without a blocker, the second with x < 0 blocked,
 /// and the third with x > 0 blocked. The first spectrum is F₀ = A exp(−πa²Ω'²) with A = γ^(−1/2)
 /// exp(−πΩv²/γ) a, 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ. The other two spectra are F₀/2 ∓ i/√π · A ·
 /// Dawson(√π a Ω') (docs/theory.md (22)).
@@ -183,7 +183,7 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     [even.into(), half, half.conj()]
 }
 
-/// Returns Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule, since the integrand is an
+/// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule, since the integrand is an
 /// entire function.
 fn dawson(x: f64) -> f64 {
     integrate(24 + whole((x * x).ceil()), [0.0, x], |t| {
@@ -191,7 +191,7 @@ fn dawson(x: f64) -> f64 {
     })
 }
 
-/// Returns the windowed spectrum of an area light at a distance d behind a grating: Σ cₙ I(D; Ωx −
+/// The windowed spectrum of an area light at a distance d behind a grating: Σ cₙ I(D; Ωx −
 /// n f, Ωv + n f d), where I is the spectrum without the grating.
 #[must_use]
 pub(crate) fn through_grating(
@@ -207,7 +207,7 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// Returns the windowed spectrum of the light that a strip blocks. `strip` contains the strip's
+/// The windowed spectrum of the light that a strip blocks. `strip` contains the strip's
 /// lowest and highest coordinate in metres. The spectrum is a double integral over the position y
 /// on the strip and the position y₀ on the light, with v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
@@ -234,7 +234,7 @@ pub(crate) fn blocked_by_strip(
     sum / bench.to_blockers
 }
 
-/// Returns the spectrum of a field times g(v) = (1 + v²)^(−3/2). It is computed from spectra of the
+/// The spectrum of a field times g(v) = (1 + v²)^(−3/2). It is computed from spectra of the
 /// field under other Gaussian windows. In g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds, the factor
 /// exp(−s²v²) adds s²/π to 1/b² (docs/theory.md (8)).
 ///
@@ -258,7 +258,7 @@ pub(crate) fn shaded(
     sum * (4.0 * STEP / PI.sqrt())
 }
 
-/// Returns the spectrum of the irradiance behind a grating, without a window: Σ cₙ w sinc(w(Ωx − n
+/// The spectrum of the irradiance behind a grating, without a window: Σ cₙ w sinc(w(Ωx − n
 /// f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
 #[must_use]
 pub(crate) fn irradiance(bench: &GaussianBlock, grating: &CosineGrating, x: f64) -> Complex {

@@ -23,7 +23,7 @@ impl GratingScene {
         }
     }
 
-    /// Returns the spectrum after one of the steps 1 to 6, in closed form.
+    /// The spectrum after one of the steps 1 to 6, in closed form.
     fn closed(&self, step: usize, k: [f64; 2]) -> Complex {
         let ReferenceScene {
             bench, gaussian, ..
@@ -46,7 +46,7 @@ impl GratingScene {
         }
     }
 
-    /// Returns the spectrum after one of the steps 1 to 4, from the polygon of the light. Each line
+    /// The spectrum after one of the steps 1 to 4, from the polygon of the light. Each line
     /// of the grating adds a copy that is shifted in frequency.
     fn polygons(&self, step: usize, [x, v]: [f64; 2]) -> Complex {
         let ReferenceScene {

@@ -16,7 +16,7 @@ pub(crate) struct JitteredArray {
     pub(crate) jitter: f64,
 }
 
-/// Returns the expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered
+/// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered
 /// array, in m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ)
 /// (docs/theory.md (10)).
 ///

@@ -55,7 +55,7 @@ fn frequency_4d(sample: &Value) -> [f64; 4] {
     ["ox", "oy", "ou", "ov"].map(|name| number(&sample[name]))
 }
 
-/// Returns the largest deviation relative to the largest expected value; requires at least `count`
+/// The largest deviation relative to the largest expected value; requires at least `count`
 /// samples.
 fn deviation(count: usize, pairs: impl IntoIterator<Item = (Complex, Complex)>) -> f64 {
     let pairs: Vec<_> = pairs.into_iter().collect();
@@ -76,7 +76,7 @@ fn cut(width: f64) -> Profile {
     }
 }
 
-/// Returns the spectrum's factor over (x, u), for a chain whose rectangles are unbounded along y.
+/// The spectrum's factor over (x, u), for a chain whose rectangles are unbounded along y.
 fn factor(chain: &Chain, [x, u]: [Profile; 2], k: [f64; 2]) -> Complex {
     let expansion = Expansion::of_rectangles(chain, &window(x, u));
     let section = &expansion.sections[0];
@@ -94,7 +94,7 @@ fn strip(center: f64, width: f64) -> Rectangle {
     }
 }
 
-/// Returns a chain with a light of the given width at the given distance, and without occluders.
+/// A chain with a light of the given width at the given distance, and without occluders.
 fn light(width: f64, distance: f64) -> Chain {
     let mut chain = chain(width, &[(distance, vec![])]);
     chain.source.light = lambertian(strip(0.0, width));
@@ -107,7 +107,7 @@ struct ReferenceScene {
     profiles: [Profile; 2],
 }
 
-/// Returns the light, distances and Gaussian window of a block.
+/// The light, distances and Gaussian window of a block.
 fn scene(parameters: &Value) -> ReferenceScene {
     let p = |name: &str| number(&parameters[name]);
     ReferenceScene {

@@ -28,7 +28,7 @@ fn assert_seen(what: &str, off: f64) {
     println!("  {what}: {off:.2e}");
 }
 
-/// Returns the largest deviation of a real function of Ω from the samples of a block.
+/// The largest deviation of a real function of Ω from the samples of a block.
 fn curve(block: &Value, count: usize, f: impl Fn(f64) -> f64) -> f64 {
     let pairs = samples(&block["samples"]).iter().map(|sample| {
         let got = f(number(&sample["omega"]));

@@ -32,21 +32,21 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Returns the bandwidth Ω_ρ |1 + 2kd/cos θ₁|, which is Eq. 20 of Durand et al. 2005 extended
+    /// The bandwidth Ω_ρ |1 + 2kd/cos θ₁|, which is Eq. 20 of Durand et al. 2005 extended
     /// to any distance. The environment is assumed to have light at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Returns the bandwidth of an edge before a uniform environment, which is Ω_ρ |1 + d (cos
+    /// The bandwidth of an edge before a uniform environment, which is Ω_ρ |1 + d (cos
     /// θ₀/d' + 2k)/cos θ₁|. This formula is Eq. 21 extended to any distance and angle.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
     }
 
-    /// Returns an upper bound on the bandwidth of an edge before an environment with the cutoff
+    /// An upper bound on the bandwidth of an edge before an environment with the cutoff
     /// Ω_e, which is Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
     ///
     /// A small bright light behind an edge causes sharp shadows with any BRDF.
@@ -56,7 +56,7 @@ impl Criterion {
         self.environment() + self.edge() * (self.lobe_cutoff + self.environment_cutoff)
     }
 
-    /// Returns the largest |Ωx| of the light that leaves the surface, where x is perpendicular to
+    /// The largest |Ωx| of the light that leaves the surface, where x is perpendicular to
     /// the ray and Ωx is in cycles per metre. With the blur by the cosine, this frequency is [cos
     /// θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k| Ω_ρ + |k| Ω_cos]/cos θ₁.
     #[must_use]
@@ -66,7 +66,7 @@ impl Criterion {
         (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
-    /// Returns the absolute value of Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ. The printed equation is an
+    /// The absolute value of Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ. The printed equation is an
     /// approximation for a distant eye, which omits the term 1. The approximation requires a large
     /// |2kd/cos θ₁|, whereas the paper requires d ≫ 1.
     #[must_use]
@@ -74,7 +74,7 @@ impl Criterion {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Returns the bandwidth by Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ. As in the paper's
+    /// The bandwidth by Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ. As in the paper's
     /// text, |k| replaces k. The printed equation is an approximation for a distant eye and for
     /// light along the normal, so it omits the term 1 and the factor cos θ₀.
     #[must_use]

@@ -4,7 +4,7 @@ use etendue_field::sinc;
 use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Returns the transform of the clamped cosine, which is cos θ for |θ| < π/2 and 0 elsewhere. The
+/// The transform of the clamped cosine, which is cos θ for |θ| < π/2 and 0 elsewhere. The
 /// transform is 2 cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
 /// The transform is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)] with w = 2πΩ. This form is
@@ -18,7 +18,7 @@ pub fn cosine_hat(omega: f64) -> f64 {
     FRAC_PI_2 * (sinc(0.5 * (1.0 - w)) + sinc(0.5 * (1.0 + w)))
 }
 
-/// Returns the transform of cos² φ on |φ| < π/2, which is the factor of the cosine along latitudes
+/// The transform of cos² φ on |φ| < π/2, which is the factor of the cosine along latitudes
 /// in 4D: dE = ℓ cos θ cos² φ dθ dφ.
 ///
 /// The transform is π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al.
@@ -30,7 +30,7 @@ pub fn cosine_squared_hat(omega: f64) -> f64 {
     0.5 * PI * sinc(0.5 * w) + 0.25 * PI * sides
 }
 
-/// Returns the transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 −
+/// The transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 −
 /// πΩ)) (Gradshteyn and Ryzhik, 3.631.9).
 ///
 /// The transform is zero at the poles of the second gamma function, where 1 + n/2 − πΩ is 0, −1, …

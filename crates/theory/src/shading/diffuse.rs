@@ -2,14 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Returns the transform of g(v) = (1 + v²)^(−3/2), the cosine times dθ/dv in 2D (Durand et al.
+/// The transform of g(v) = (1 + v²)^(−3/2), the cosine times dθ/dv in 2D (Durand et al.
 /// 2005, section 3.3): ĝ(Ω) = 4π|Ω| K₁(2π|Ω|), which is 2 at zero. Ω is in cycles per unit slope.
 #[must_use]
 pub fn g_hat(omega: f64) -> f64 {
     2.0 * z_k1(TAU * omega.abs())
 }
 
-/// Returns the transform of G(u, v) = (1 + u² + v²)⁻², the cosine times dω/(du dv) in 3D (Durand et
+/// The transform of G(u, v) = (1 + u² + v²)⁻², the cosine times dω/(du dv) in 3D (Durand et
 /// al. 2005, section 5.1): Ĝ(Ωu, Ωv) = 2π² r K₁(2πr), with r = |(Ωu, Ωv)|. The transform is π at
 /// zero, and equals π/2 · ĝ(r).
 #[must_use]

@@ -8,7 +8,7 @@
 use super::cosine_hat;
 use etendue_field::Complex;
 
-/// Returns the spectrum 1/|k| env^(Ωx/k) cos⁺^(Ωx/k) of the irradiance along the surface, E(s) = ∫
+/// The spectrum 1/|k| env^(Ωx/k) cos⁺^(Ωx/k) of the irradiance along the surface, E(s) = ∫
 /// env(θ) cos⁺(θ − k s) dθ.
 ///
 /// This spectrum is a product of spectra, so the irradiance is a convolution in the primal domain

@@ -11,7 +11,7 @@ const GRAZING: i32 = 12;
 /// as a square root.
 const CRITICAL: i32 = 40;
 
-/// Returns the share of unpolarised radiance that an interface reflects. It is the factor f(θ) of a
+/// The share of unpolarised radiance that an interface reflects. It is the factor f(θ) of a
 /// separable BRDF. The angle θ is measured from the normal, in radians, with |θ| ≤ π/2. An index
 /// below 1 describes light that arrives inside a denser medium. All of this light is reflected if
 /// the angle of incidence exceeds asin(index).
@@ -21,7 +21,7 @@ pub fn fresnel_reflectance(fresnel: Fresnel, theta: f64) -> f64 {
     unpolarised_reflectance(fresnel, cosine, sine * sine)
 }
 
-/// Returns the transform of F(θ) cos⁺(θ), with Ω in cycles per radian. It is the combined kernel of
+/// The transform of F(θ) cos⁺(θ), with Ω in cycles per radian. It is the combined kernel of
 /// Fresnel reflection and cosine. The transform is real and even. Durand et al. 2005 plot it in
 /// Fig. 12-b, but give no formula. It is computed by quadrature to 10⁻¹².
 #[must_use]
@@ -31,7 +31,7 @@ pub fn fresnel_cosine_hat(fresnel: Fresnel, omega: f64) -> f64 {
     })
 }
 
-/// Returns the ends of panels that become shorter towards grazing angles, and towards the critical
+/// The ends of panels that become shorter towards grazing angles, and towards the critical
 /// angle, where the reflectance behaves as a square root.
 fn ends(fresnel: Fresnel) -> Vec<f64> {
     let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
@@ -51,7 +51,7 @@ fn ends(fresnel: Fresnel) -> Vec<f64> {
     ends
 }
 
-/// Returns the share of unpolarised radiance that an interface reflects, at an angle with the given
+/// The share of unpolarised radiance that an interface reflects, at an angle with the given
 /// cosine and squared sine. The share is the mean over both polarisations (Born and Wolf 1999,
 /// section 1.5).
 pub(crate) fn unpolarised_reflectance(fresnel: Fresnel, cosine: f64, squared_sine: f64) -> f64 {

@@ -73,7 +73,7 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns the spectrum ρ̂'(Ω) of the lobe, with Ω in cycles per radian (Durand et al. 2005,
+    /// The spectrum ρ̂'(Ω) of the lobe, with Ω in cycles per radian (Durand et al. 2005,
     /// Eq. 16). The spectrum is real and even, and 1 at zero.
     ///
     /// The spectrum of a Phong lobe is Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)), and the
@@ -92,7 +92,7 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns the frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
+    /// The frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
     /// radian. `fraction` is this share and is in (0, 1).
     ///
     /// For a Gaussian lobe the frequency is 0.2899/σ for 99 % and 0.2206/σ for 95 %. Durand et al.
@@ -131,7 +131,7 @@ impl PlanarLobe {
         f64::NAN
     }
 
-    /// Returns ∫ |ρ̂'|² dΩ = ∫ ρ'² dδ (Parseval).
+    /// ∫ |ρ̂'|² dΩ = ∫ ρ'² dδ (Parseval).
     fn energy(&self) -> f64 {
         match *self {
             Self::Phong { exponent } => {
@@ -144,7 +144,7 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns the width of the lobe from which step sizes are derived.
+    /// The width of the lobe from which step sizes are derived.
     fn width(&self) -> f64 {
         match *self {
             Self::Phong { exponent } => exponent.max(1.0).sqrt().recip(),
@@ -153,7 +153,7 @@ impl PlanarLobe {
         }
     }
 
-    /// Returns the ends of panels over half of the lobe. The poles of GGX are at about 2α, which is
+    /// The ends of panels over half of the lobe. The poles of GGX are at about 2α, which is
     /// also the width of Beckmann's lobe.
     fn ends(&self) -> Vec<f64> {
         doubling(self.width(), PI)

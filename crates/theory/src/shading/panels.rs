@@ -31,7 +31,7 @@ pub fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -> f64 {
     2.0 * ends.windows(2).map(panel).sum::<f64>()
 }
 
-/// Returns the ends of panels from 0 to `end`. The first panel has the length `first`, and each
+/// The ends of panels from 0 to `end`. The first panel has the length `first`, and each
 /// later panel is as long as all panels before it.
 pub(super) fn doubling(first: f64, end: f64) -> Vec<f64> {
     let mut ends = vec![0.0];

@@ -29,7 +29,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// Returns the ray from a light without extent to `point`. `point` is in the frame at the light,
+/// The ray from a light without extent to `point`. `point` is in the frame at the light,
 /// and the ray is given in the plane of the light. Also returns a ratio: the irradiance that the
 /// light causes at `point` on an area perpendicular to the ray, divided by the value of the ray per
 /// du dv or dx dy.

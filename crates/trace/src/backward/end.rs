@@ -18,7 +18,7 @@ pub(super) enum End {
 }
 
 impl End {
-    /// Returns the end at a point of a virtual plane, at a distance along the plane's leg.
+    /// The end at a point of a virtual plane, at a distance along the plane's leg.
     pub(super) fn at_plane(plane_on_leg: &PlaneOnLeg, distance: f64) -> Self {
         match (plane_on_leg.side, plane_on_leg.view()) {
             (Side::Before, Some(_)) => Self::OnSurface(distance),
@@ -33,7 +33,7 @@ impl End {
         }
     }
 
-    /// Returns the distance along the leg up to which light may leave the surface at the
+    /// The distance along the leg up to which light may leave the surface at the
     /// beginning of the leg.
     pub(super) fn of_line(self) -> f64 {
         match self {

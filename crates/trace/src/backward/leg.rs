@@ -64,7 +64,7 @@ pub(super) enum Scattering {
 }
 
 impl IncomingRay {
-    /// Returns a ray of the first leg, given by its coordinates in the plane of the light.
+    /// A ray of the first leg, given by its coordinates in the plane of the light.
     pub(super) fn from_light(ray: TwoPlane) -> Self {
         Self {
             leg: 0,

@@ -26,7 +26,7 @@ impl TracedLight {
         }
     }
 
-    /// Returns the density per solid angle of directions that are drawn from a point towards the
+    /// The density per solid angle of directions that are drawn from a point towards the
     /// light.
     pub(super) fn density_towards(&self, point: DVec3, towards: DVec3) -> f64 {
         let shape = match self {

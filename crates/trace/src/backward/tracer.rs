@@ -80,7 +80,7 @@ impl Backward {
         })
     }
 
-    /// Returns the radiance that crosses plane number `plane` along a ray, in W m⁻² sr⁻¹, times dA /
+    /// The radiance that crosses plane number `plane` along a ray, in W m⁻² sr⁻¹, times dA /
     /// dx dy on a curved surface. The ray is given in the coordinates of the plane.
     ///
     /// If light is scattered on its way, the result is an unbiased estimate, and `index` selects its
@@ -102,7 +102,7 @@ impl Backward {
         })
     }
 
-    /// Returns four random numbers of ray number `index` of one plane. The ray itself uses block 0,
+    /// Four random numbers of ray number `index` of one plane. The ray itself uses block 0,
     /// and each surface that it meets uses a further block.
     fn random_numbers(&self, plane: u32, index: u64, block: u32) -> [f64; 4] {
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
@@ -110,7 +110,7 @@ impl Backward {
         random::words(self.seed, Stream::Backward, index, block).map(random::unit)
     }
 
-    /// Returns the ray with number `index` of one plane, and the weight of this ray in radiance
+    /// The ray with number `index` of one plane, and the weight of this ray in radiance
     /// space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
         let words = |block| self.random_numbers(plane, index, block);
@@ -169,7 +169,7 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives at the end point of a ray. `block` selects the random
+    /// The radiance that arrives at the end point of a ray. `block` selects the random
     /// numbers of the next surface on the way back to the light.
     #[expect(
         clippy::too_many_lines,
@@ -263,7 +263,7 @@ impl Backward {
         }
     }
 
-    /// Returns the radiance that arrives in a direction at a point of the surface that ends a leg.
+    /// The radiance that arrives in a direction at a point of the surface that ends a leg.
     /// The direction and the point are in the frame at the light.
     fn along(
         &self,
@@ -281,7 +281,7 @@ impl Backward {
         })
     }
 
-    /// Returns the radiance that arrives along a ray at a point of the surface that ends its leg.
+    /// The radiance that arrives along a ray at a point of the surface that ends its leg.
     /// The point is at the distance `end`. If the surface is concave or solid, another part of it
     /// may block this ray.
     fn arriving(
@@ -312,7 +312,7 @@ impl Backward {
         self.incident(incoming, End::Surface(end), block, words)
     }
 
-    /// Returns the irradiance at a point with a given normal at the end of a leg. The light comes
+    /// The irradiance at a point with a given normal at the end of a leg. The light comes
     /// from one point of the surface, or of the light source, at the beginning of the leg. All
     /// vectors are in the frame at the light.
     fn irradiance(
@@ -385,7 +385,7 @@ impl Backward {
 }
 
 impl Backward {
-    /// Returns the irradiance at a point behind a mirror, an interface or a lens, estimated from
+    /// The irradiance at a point behind a mirror, an interface or a lens, estimated from
     /// one direction that is drawn in proportion to the cosine.
     fn through_turn(
         &self,
@@ -425,7 +425,7 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// Returns the radiance reflected at the end of a leg, estimated from one direction. On later
+    /// The radiance reflected at the end of a leg, estimated from one direction. On later
     /// legs, the direction is drawn by the lobe of the BRDF. On the first leg, half of the
     /// directions are drawn by the lobe, and half of them towards a point of the light. The
     /// estimate is divided by the density of this mixture. This weighting is the balance heuristic
@@ -442,6 +442,7 @@ impl Backward {
             brdf, frame, to, ..
         } = at;
         let sees_light = self.legs[leg].courses.along.leaves.is_none();
+        // No drawn direction would meet a light without extent.
         if let (TracedLight::Narrow(light), true) = (&self.light, sees_light) {
             return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
                 let from = frame.vector_to_local(-direction(&ray).normalize());
@@ -481,7 +482,7 @@ impl Backward {
 }
 
 impl Backward {
-    /// Returns the radiance that a light without extent causes at a virtual plane on the first leg.
+    /// The radiance that a light without extent causes at a virtual plane on the first leg.
     /// Draws a point in the plane's window; one direction leads from it to the light.
     fn look_at_light(
         &self,

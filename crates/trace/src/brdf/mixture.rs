@@ -5,7 +5,7 @@ use super::{density, sample, value};
 use etendue_field::Mixture;
 use glam::DVec3;
 
-/// Returns the value of the sum of BRDFs, sr⁻¹.
+/// The value of the sum of BRDFs, sr⁻¹.
 #[inline]
 #[must_use]
 pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
@@ -13,7 +13,7 @@ pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     values.map(|(weight, of)| weight * value(of, wi, wo)).sum()
 }
 
-/// Returns a direction drawn by one of the BRDFs as in [`sample`]. The first random number also
+/// A direction drawn by one of the BRDFs as in [`sample`]. The first random number also
 /// selects the BRDF.
 #[inline]
 pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -38,7 +38,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
 /// The largest random number from which a direction is drawn.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
-/// Returns the density of [`towards`] per solid angle.
+/// The density of [`towards`] per solid angle.
 #[inline]
 pub(crate) fn densities(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     let each = mixture.weighted();

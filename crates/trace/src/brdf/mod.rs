@@ -12,7 +12,7 @@ use glam::DVec3;
 pub use mixture::sum;
 pub(crate) use mixture::{densities, towards};
 
-/// Returns the BRDF, sr⁻¹.
+/// The BRDF, sr⁻¹.
 #[inline]
 #[must_use]
 pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
@@ -32,7 +32,7 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
         * factor(brdf.outgoing.as_ref(), wo)
 }
 
-/// Returns the value of an angular factor's table for a direction, or 1 if there is no table.
+/// The value of an angular factor's table for a direction, or 1 if there is no table.
 #[inline]
 fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
@@ -53,7 +53,7 @@ pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     }
 }
 
-/// Returns the density of [`sample`] per solid angle over the whole sphere, which includes
+/// The density of [`sample`] per solid angle over the whole sphere, which includes
 /// directions below the surface.
 #[inline]
 pub(crate) fn density(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {

@@ -25,7 +25,7 @@ pub(super) enum Plain {
 const WORD: f64 = 4_294_967_296.0;
 
 impl Plain {
-    /// Returns a ray drawn with four random numbers in (0, 1).
+    /// A ray drawn with four random numbers in (0, 1).
     #[inline(never)]
     pub(super) fn sample(&self, r: [f64; 4]) -> TwoPlane {
         let (sin, cos) = libm::sincos(TAU * r[3]);
@@ -55,7 +55,7 @@ impl Plain {
         TwoPlane { x, y, u, v }
     }
 
-    /// Returns the density of [`Self::sample`]. The density is per du dv for a point light or a
+    /// The density of [`Self::sample`]. The density is per du dv for a point light or a
     /// projector, per dx dy for a beam, and per dx dy du dv for an area light. A ray of a
     /// file is drawn with a probability equal to its share of the flux, and then represents the
     /// total flux. Therefore its density is 1.
@@ -76,7 +76,7 @@ impl Plain {
     }
 }
 
-/// Returns the envelope of a picture at (a, b), normalised to an integral of 1.
+/// The envelope of a picture at (a, b), normalised to an integral of 1.
 fn envelope(image: &Image, a: f64, b: f64) -> f64 {
     let grating = None;
     Image { grating, ..*image }.value(a, b) / image.area()

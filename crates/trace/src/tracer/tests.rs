@@ -7,12 +7,12 @@ use crate::mesh_order::OrderMemory;
 use etendue_scene::{Sampling, SceneFile, resolve};
 use etendue_transform::random::words;
 
-/// Returns random numbers 0..`count`.
+/// Random numbers 0..`count`.
 fn dice(seed: u64, index: u64, count: u32) -> [u32; 4] {
     words(seed, Stream::Photon, index, 9).map(|word| word % count)
 }
 
-/// Returns a scene with obstacles across the leg at distances of 1 to 3. All edges have coordinates
+/// A scene with obstacles across the leg at distances of 1 to 3. All edges have coordinates
 /// that are multiples of 1/16. Some scenes also have a mesh between the last two distances.
 fn scene(seed: u64) -> Scene {
     let mut blockers = String::new();
@@ -79,7 +79,7 @@ fn scene(seed: u64) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Returns photons whose coordinates at all obstacles are multiples of 1/16. Some carry no light.
+/// Photons whose coordinates at all obstacles are multiples of 1/16. Some carry no light.
 fn group(seed: u64, number: u64) -> PhotonGroup {
     let number = |i: usize, k: usize| dice(seed, number * 64 + i as u64, 33)[k];
     let column = |k: usize| lanes(|i| (f64::from(number(i, k)) - 16.0) / 16.0);
@@ -93,7 +93,7 @@ fn group(seed: u64, number: u64) -> PhotonGroup {
     group
 }
 
-/// Returns a scene with a disc light, a floor, and layers of one rectangle each.
+/// A scene with a disc light, a floor, and layers of one rectangle each.
 fn layered(layers: u32) -> Scene {
     let layer = |i: u32| {
         let distance = 1.0 + f64::from(i) / 16.0;

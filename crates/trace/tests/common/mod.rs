@@ -4,7 +4,7 @@ use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_scene::Scene;
 use std::f64::consts::TAU;
 
-/// Returns the means and standard errors, at each virtual plane, of the windowed light field and
+/// The means and standard errors, at each virtual plane, of the windowed light field and
 /// of two of its Fourier sums.
 pub(crate) fn estimates(source: &dyn PhotonSource, scene: &Scene) -> (Vec<[[f64; 2]; 3]>, Ledger) {
     let mut sums = vec![[[0.0; 2]; 3]; scene.planes.len()];

@@ -22,7 +22,7 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Returns an empty block with its full capacity allocated.
+    /// An empty block with its full capacity allocated.
     pub(crate) fn new() -> Self {
         let column = || Vec::with_capacity(CAPACITY);
         Self {

@@ -70,7 +70,7 @@ impl FineTransform {
         }
     }
 
-    /// Returns the working memory.
+    /// The working memory.
     pub(crate) fn workspace(&self) -> Workspace {
         let Placement { rows, columns, .. } = self.placement;
         let scratch = [

@@ -74,7 +74,7 @@ pub(crate) fn spread<S: Simd>(
     }
 }
 
-/// Returns the power of two by which weights are multiplied before they are rounded to whole
+/// The power of two by which weights are multiplied before they are rounded to whole
 /// numbers. No cell can overflow, even if all rays lie in one cell, because the scaled weights sum
 /// to at most 2³⁰ and the taps are at most 1. The result is NaN if the sum of the weights is not
 /// finite.

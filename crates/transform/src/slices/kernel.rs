@@ -59,7 +59,7 @@ impl<const TAPS: usize> Kernel<f64, TAPS> {
         Self { terms }
     }
 
-    /// Returns the same kernel with coefficients in single precision.
+    /// The same kernel with coefficients in single precision.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the error of six taps is larger than that of f32"
@@ -80,7 +80,7 @@ impl<const TAPS: usize> Kernel<f64, TAPS> {
         horner(0) + horner(1) * t
     }
 
-    /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
+    /// The Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
     /// cycles per cell.
     ///
     /// The result is the transform of the polynomials that are used for spreading. It is computed
@@ -101,7 +101,7 @@ impl<const TAPS: usize> Kernel<f64, TAPS> {
 }
 
 impl<const TAPS: usize> Kernel<f32, TAPS> {
-    /// Returns the same kernel with the same coefficients in double precision.
+    /// The same kernel with the same coefficients in double precision.
     pub(crate) fn double(&self) -> Kernel<f64, TAPS> {
         Kernel {
             terms: self.terms.map(|terms| terms.map(f64::from)),
@@ -151,7 +151,7 @@ fn exact<const TAPS: usize>(tap: usize, f: f64) -> f64 {
     libm::exp(BETA * TAPS as f64 * ((1.0 - z * z).max(0.0).sqrt() - 1.0))
 }
 
-/// Returns the coefficients of t⁰, t¹, … of the polynomial that interpolates `function` at the
+/// The coefficients of t⁰, t¹, … of the polynomial that interpolates `function` at the
 /// Chebyshev nodes of [−1, 1].
 fn fit(function: impl Fn(f64) -> f64) -> [f64; TERMS] {
     const N: usize = TERMS;

@@ -133,7 +133,7 @@ impl SliceTransform {
         }
     }
 
-    /// Returns the number of bytes of an accumulator.
+    /// The number of bytes of an accumulator.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let [cells, whole] = self.cell_counts();
@@ -141,7 +141,7 @@ impl SliceTransform {
         (cells + self.fine.workspace().bytes()) as f64
     }
 
-    /// Returns the numbers of cells of an accumulator that hold f64, and that hold whole numbers.
+    /// The numbers of cells of an accumulator that hold f64, and that hold whole numbers.
     fn cell_counts(&self) -> [usize; 2] {
         let [rows, columns] = self.placements[0].padded();
         let whole = match self.spreading {
@@ -151,7 +151,7 @@ impl SliceTransform {
         [self.grid.azimuths * rows * columns, whole]
     }
 
-    /// Returns an empty sum.
+    /// An empty sum.
     #[must_use]
     pub fn accumulator(&self) -> Accumulator<'_> {
         let [cells, whole] = self.cell_counts();
@@ -165,7 +165,7 @@ impl SliceTransform {
     }
 }
 
-/// Returns the number of cells of a period. There are 2.5 cells for each frequency and at least two
+/// The number of cells of a period. There are 2.5 cells for each frequency and at least two
 /// widths of the kernel. The number has no prime factors other than 2, 3 and 5.
 fn cells(axis: &FrequencyAxis) -> usize {
     let mut count = usize::max(UPSAMPLING * axis.half, 2 * WIDTH);

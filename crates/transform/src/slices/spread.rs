@@ -22,14 +22,14 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Returns the numbers of rows and columns of the padded fine grid. A ray reaches at most eight
+    /// The numbers of rows and columns of the padded fine grid. A ray reaches at most eight
     /// cells from its first cell, and cells outside the period are wrapped once, after all
     /// spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
 
-    /// Returns the first padded cell of a ray, and 2f − 1 along rows and along columns, where f is
+    /// The first padded cell of a ray, and 2f − 1 along rows and along columns, where f is
     /// the fraction of a cell by which the ray lies beyond its own cell.
     ///
     /// A point outside the period is moved into it by whole periods. The sum does not change,

@@ -92,7 +92,7 @@ impl AdaptiveRun<'_> {
 /// The sums of e² n² and of n_c², from which the factors k are computed.
 type Factors = ObjectSums<2>;
 
-/// Returns the ratio k of measured to predicted squared errors of an object, up to a common factor.
+/// The ratio k of measured to predicted squared errors of an object, up to a common factor.
 /// The ratio is never zero, because the first samples may have missed the object's light.
 fn factor(factors: &Factors, object: usize) -> f64 {
     let [error, criterion] = factors.all();

@@ -19,7 +19,7 @@ const STEP: usize = 4;
 /// points in a picture of 800 × 500 pixels.
 const PIXELS_PER_POINT: usize = 20;
 
-/// Returns the sparse points of a criterion. They form a grid; those of the paper's method are blue
+/// The sparse points of a criterion. They form a grid; those of the paper's method are blue
 /// noise over what is visible.
 pub(crate) fn points(visible: &Visible, by: BandwidthCriterion, seed: u64) -> Vec<PicturePoint> {
     let [w, h] = visible.size;
@@ -41,7 +41,7 @@ pub(crate) fn points(visible: &Visible, by: BandwidthCriterion, seed: u64) -> Ve
     }
 }
 
-/// Returns the nearness of blockers at each pixel. From each of the sparse points, `rays` rays go
+/// The nearness of blockers at each pixel. From each of the sparse points, `rays` rays go
 /// towards the objects that the point reflects, and equally many go towards lights. For the
 /// printed criterion, they go into the hemisphere, and none go towards lights.
 ///
@@ -83,7 +83,7 @@ pub(crate) fn nearness(
     values.iter().map(of).collect()
 }
 
-/// Returns the slope between adjacent pixels at the centre of the picture.
+/// The slope between adjacent pixels at the centre of the picture.
 fn pixel_angle(camera: &Camera) -> f64 {
     let [w, h] = camera.size.map(|n| 0.5 * n as f64);
     let [a, b] = [w, w + 1.0].map(|x| camera.look([x, h], [0.0; 2]).along);

@@ -15,7 +15,7 @@ use std::collections::BinaryHeap;
 /// Number of candidates for each point that is kept.
 const CANDIDATES: usize = 5;
 
-/// Returns the eighth power, which Eq. 3 of Yuksel 2015 uses.
+/// The eighth power, which Eq. 3 of Yuksel 2015 uses.
 fn eighth(x: f64) -> f64 {
     let square = x * x;
     let fourth = square * square;
@@ -54,7 +54,7 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Returns random points that are drawn from the density. The points are drawn independently.
+/// Random points that are drawn from the density. The points are drawn independently.
 /// Stratified points would be less crowded in dense regions, so elimination would leave too many
 /// points in these regions.
 fn candidates(
@@ -92,13 +92,13 @@ struct Crowd {
     queue: BinaryHeap<(i64, Reverse<u32>)>,
 }
 
-/// Returns a number by which weights are ordered, as by [`f64::total_cmp`].
+/// A number by which weights are ordered, as by [`f64::total_cmp`].
 fn rank(weight: f64) -> i64 {
     let bits = weight.to_bits().cast_signed();
     bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
 }
 
-/// Returns the maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
+/// The maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
 fn largest_radius() -> f64 {
     (2.0 * 3.0_f64.sqrt()).recip().sqrt()
 }
@@ -202,7 +202,7 @@ impl PointGrid {
     }
 }
 
-/// Returns the number of a cell, clamped to the grid.
+/// The number of a cell, clamped to the grid.
 fn cell(at: f64, cells: usize) -> usize {
     whole(at / CELL as f64).min(cells - 1)
 }

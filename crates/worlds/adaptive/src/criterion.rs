@@ -27,7 +27,7 @@ pub(crate) enum BandwidthCriterion {
 }
 
 impl BandwidthCriterion {
-    /// Returns the squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
+    /// The squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
     /// shaded.
     pub(crate) fn squared(
         self,
@@ -57,7 +57,7 @@ fn corrected(visible: &Visible, pixel: [usize; 2], nearness: Nearness) -> Option
     Some(lobe.plus(shadow))
 }
 
-/// Returns the bandwidth of a pixel, in cycles per pixel, by Eq. 21 of Durand et al. 2005 as
+/// The bandwidth of a pixel, in cycles per pixel, by Eq. 21 of Durand et al. 2005 as
 /// printed, B' = d/(n·v) (1/d' + 2k) Ω_ρ. Without blockers, 1/d' = 0, this is Eq. 20. As the paper
 /// does, it computes 2kd/(n·v) by finite differences on the screen: twice the turn of the normal
 /// from pixel to pixel, in the direction where it is largest. A surface without a lobe has the
@@ -86,7 +86,7 @@ fn printed(
 /// The smallest cosine of the view in Eq. 21, which has no value at 0.
 const GRAZING: f64 = 1e-3;
 
-/// Returns the principal curvature of larger magnitude in a pixel, per unit of length, positive if
+/// The principal curvature of larger magnitude in a pixel, per unit of length, positive if
 /// convex; NaN if nothing is shaded.
 pub(crate) fn curvature(visible: &Visible, pixel: [usize; 2]) -> f64 {
     let places = visible.of_pixel(pixel);
@@ -115,7 +115,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     0.5 * both + root.copysign(both)
 }
 
-/// Returns the surface at a point if the surface scatters light.
+/// The surface at a point if the surface scatters light.
 pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface
@@ -151,7 +151,7 @@ fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     steps
 }
 
-/// Returns JᵀJ for the Jacobian J with the given columns.
+/// JᵀJ for the Jacobian J with the given columns.
 fn of_columns(right: DVec3, down: DVec3) -> Metric {
     Metric {
         xx: right.length_squared(),
@@ -176,7 +176,7 @@ mod tests {
     const DISTANCE: f64 = 3.0;
     const ALPHA: f64 = 0.2;
 
-    /// Returns a rough metal ball before a camera of narrow pixels.
+    /// A rough metal ball before a camera of narrow pixels.
     fn seen() -> (Paths, Camera) {
         let scale = DAffine3::from_scale(DVec3::splat(RADIUS));
         let world = World {

@@ -57,7 +57,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
     found
 }
 
-/// Returns the squared relative errors of the light, without the part due to noise, as values of
+/// The squared relative errors of the light, without the part due to noise, as values of
 /// samples. `samples` contains the variance of the light of each sample.
 pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) -> Vec<ShadedSample> {
     let dark = dark(samples);
@@ -75,7 +75,7 @@ pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) ->
     errors.iter().map(of).collect()
 }
 
-/// Returns a hundredth of the mean radiance. For light below this radiance, errors are relative to
+/// A hundredth of the mean radiance. For light below this radiance, errors are relative to
 /// this radiance.
 pub(crate) fn dark(samples: &[(ShadedSample, f64)]) -> f64 {
     let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));

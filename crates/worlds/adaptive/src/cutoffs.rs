@@ -17,7 +17,7 @@ pub(crate) struct Cutoffs {
 }
 
 impl Cutoffs {
-    /// Returns the cutoff in cycles per radian.
+    /// The cutoff in cycles per radian.
     pub(crate) fn of(&self, reflects: Reflects) -> f64 {
         match reflects {
             Reflects::Nothing => 0.0,

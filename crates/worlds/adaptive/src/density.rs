@@ -15,7 +15,7 @@ const MAX_SPACING: f64 = 32.0;
 /// anisotropy.
 const LONGEST: f64 = 3.0;
 
-/// Returns the metrics of evenly distributed samples.
+/// The metrics of evenly distributed samples.
 pub(crate) fn even(visible: &Visible) -> Vec<Option<Metric>> {
     visible.pixels(|pixel| {
         let places = visible.of_pixel(pixel);
@@ -60,7 +60,7 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
     wanted.iter().zip(&rates).map(of).collect()
 }
 
-/// Returns the metric for a squared bandwidth. If `is_even` is set, the metric is isotropic and
+/// The metric for a squared bandwidth. If `is_even` is set, the metric is isotropic and
 /// has the larger eigenvalue, as in the paper; otherwise it is anisotropic.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     // Along each direction, the number of samples is twice the number of cycles (Shannon), plus a
@@ -75,7 +75,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     }
 }
 
-/// Returns the metric whose density is a power of the density of another metric.
+/// The metric whose density is a power of the density of another metric.
 pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
     let density = metric.determinant().max(0.0).sqrt();
     if density > 0.0 {

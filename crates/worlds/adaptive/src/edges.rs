@@ -49,7 +49,7 @@ pub(crate) fn radiance(
     sum / count as f64
 }
 
-/// Returns the radiance of a point.
+/// The radiance of a point.
 fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
     match (place.surface, value) {
         (Some(surface), Some(value)) => place.emitted + surface.light(value),
@@ -88,7 +88,7 @@ fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
         }
 }
 
-/// Returns the mean light of stored points in and around a pixel. Only points on the same object as
+/// The mean light of stored points in and around a pixel. Only points on the same object as
 /// `surface` count. They are weighted by their similarity to the point `point` of `surface`.
 fn like(
     visible: &Visible,

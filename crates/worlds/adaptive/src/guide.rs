@@ -70,7 +70,7 @@ impl LightGuide {
         }
     }
 
-    /// Returns the whole guide at a sample.
+    /// The whole guide at a sample.
     pub(crate) fn at(&self, visible: &Visible, sample: &ShadedSample) -> SampleGuide {
         let pixel = visible.pixel_at(sample.at);
         let near = |(i, index): (usize, usize)| {
@@ -129,7 +129,7 @@ impl LightGuide {
         left.collect()
     }
 
-    /// Returns the share of the guide that is used at a point of the picture.
+    /// The share of the guide that is used at a point of the picture.
     pub(crate) fn used(&self, index: usize, surface: &SeenSurface) -> [f64; 2] {
         let shares = self.shares.of(surface.shape);
         [0, 1].map(|part: usize| shares[part] * self.values[index][part])
@@ -166,7 +166,7 @@ pub(crate) fn direct(
     of().unwrap_or_default()
 }
 
-/// Returns the number of a pixel in a tile, in the order of Morton 1966. In this order, the pixels
+/// The number of a pixel in a tile, in the order of Morton 1966. In this order, the pixels
 /// of each quarter of the tile have consecutive numbers, and so have the pixels of each quarter of
 /// a quarter.
 fn morton([column, row]: [usize; 2]) -> usize {
@@ -192,7 +192,7 @@ impl GuideShares {
         }
     }
 
-    /// Returns the shares s that minimise the error plain − s · guide of all samples, noise
+    /// The shares s that minimise the error plain − s · guide of all samples, noise
     /// included.
     fn of(&self, shape: usize) -> [f64; 2] {
         self.0.each_ref().map(|sums| {

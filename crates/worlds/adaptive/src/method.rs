@@ -216,14 +216,14 @@ impl AdaptiveRun<'_> {
         .collect()
     }
 
-    /// Returns the mean of squared errors around each pixel.
+    /// The mean of squared errors around each pixel.
     pub(crate) fn around(&self, missed: &[ShadedSample]) -> Vec<f64> {
         let values = reconstruct_pixels(self.visible, missed, SampleFit::Mean);
         let of = |value: &Option<[f64; 2]>| value.map_or(0.0, |[error, _]| error);
         values.iter().map(of).collect()
     }
 
-    /// Returns the metrics of densities that are proportional to the squared bandwidth by a
+    /// The metrics of densities that are proportional to the squared bandwidth by a
     /// criterion.
     pub(crate) fn predicted(&mut self, by: BandwidthCriterion) -> Vec<Option<Metric>> {
         let (visible, camera) = (self.visible, self.shader.camera);
@@ -272,7 +272,7 @@ impl AdaptiveRun<'_> {
         self.shader.shade(points, first, self.progress)
     }
 
-    /// Returns the relative standard deviation of samples around each pixel, after noise removal.
+    /// The relative standard deviation of samples around each pixel, after noise removal.
     fn contrast(&mut self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let wider: Vec<ShadedSample> = samples
             .iter()
@@ -346,7 +346,7 @@ impl AdaptiveRun<'_> {
         }
     }
 
-    /// Returns the light at all points. It is fitted to samples, or is the guide plus a fit to the
+    /// The light at all points. It is fitted to samples, or is the guide plus a fit to the
     /// differences between the samples and the guide.
     fn reconstructed(&self, samples: &[ShadedSample]) -> Vec<Option<[f64; 2]>> {
         let fit = self.plan.method.parts().fit;
@@ -414,7 +414,7 @@ pub(crate) fn values(samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
     samples.iter().map(|(sample, _)| *sample).collect()
 }
 
-/// Returns the metrics that minimise the error. `missed` are the squared errors found with the
+/// The metrics that minimise the error. `missed` are the squared errors found with the
 /// metrics `first`. A squared error e² at a density n requires the density (e² n²)^(1/3).
 pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<Metric>> {
     let pairs = first.iter().zip(missed);
@@ -425,7 +425,7 @@ pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<M
     pairs.map(of).collect()
 }
 
-/// Returns the metrics of two sets of samples together: the sums of both metrics.
+/// The metrics of two sets of samples together: the sums of both metrics.
 pub(crate) fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
     let both = a.iter().zip(b);
     both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))

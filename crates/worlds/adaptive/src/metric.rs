@@ -17,7 +17,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// Returns an isotropic metric.
+    /// An isotropic metric.
     #[must_use]
     pub fn even(square: f64) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Metric {
         }
     }
 
-    /// Returns the squared length of a step.
+    /// The squared length of a step.
     #[must_use]
     pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
         x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
@@ -56,7 +56,7 @@ impl Metric {
         self.xx * self.yy - self.xy * self.xy
     }
 
-    /// Returns the larger eigenvalue.
+    /// The larger eigenvalue.
     #[must_use]
     pub fn largest(&self) -> f64 {
         let (mean, off) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
@@ -71,7 +71,7 @@ impl Metric {
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
     }
 
-    /// Returns a metric that is changed towards an isotropic metric, so that the lengths of a step
+    /// A metric that is changed towards an isotropic metric, so that the lengths of a step
     /// in different directions differ by at most a factor of `most`.
     #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {

@@ -37,12 +37,12 @@ impl<const N: usize> ObjectSums<N> {
         }
     }
 
-    /// Returns the sums over all objects.
+    /// The sums over all objects.
     pub(crate) fn all(&self) -> [f64; N] {
         self.all
     }
 
-    /// Returns the sums of an object, with the mean over all objects added as [`SHARED`] samples.
+    /// The sums of an object, with the mean over all objects added as [`SHARED`] samples.
     pub(crate) fn of(&self, object: usize) -> [f64; N] {
         let own = self.objects.get(&object).copied().unwrap_or([0.0; N]);
         let shared = SHARED / self.count.max(1.0);

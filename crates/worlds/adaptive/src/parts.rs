@@ -20,8 +20,8 @@ pub enum SampleMethod {
     /// the criteria, and half follow the errors at the first samples. The errors at the first
     /// samples also calibrate the criteria for each object.
     Auto,
-    /// Samples follow only the measured light. The first quarter of the samples is distributed
-    /// uniformly, and the standard deviation of these samples is the measure.
+    /// Samples follow only the measured light. The first quarter of the samples is uniform, and the
+    /// rest follow the relative standard deviation of this quarter.
     Variance,
 }
 
@@ -61,7 +61,7 @@ pub(crate) enum SamplePlacing {
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 impl SampleMethod {
-    /// Returns the parts of the method.
+    /// The parts of the method.
     pub(crate) fn parts(self) -> MethodParts {
         let even = MethodParts {
             criterion: None,
@@ -91,7 +91,7 @@ impl SampleMethod {
         }
     }
 
-    /// Returns the default number of rays from a point that measure the distance of blockers.
+    /// The default number of rays from a point that measure the distance of blockers.
     #[must_use]
     pub fn blocker_rays(self) -> u32 {
         match self {

@@ -23,7 +23,7 @@ pub(crate) struct ShadedSample {
 }
 
 impl ShadedSample {
-    /// Returns the radiance for values of base and lobe, with the factors of the surface.
+    /// The radiance for values of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
         self.surface.light(value)
     }
@@ -58,7 +58,7 @@ pub(crate) enum SampleFit {
     Plane,
 }
 
-/// Returns the values at all points, or `None` if nothing is shaded or no sample is near.
+/// The values at all points, or `None` if nothing is shaded or no sample is near.
 pub(crate) fn reconstruct(
     visible: &Visible,
     samples: &[ShadedSample],
@@ -146,7 +146,7 @@ impl LocalSums {
         })
     }
 
-    /// Returns the value of the fitted plane at the point.
+    /// The value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
         // Positions are relative to their mean. The added term keeps the slope small if there are
         // few samples.
@@ -246,7 +246,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// Returns a bell-shaped weight at a squared distance, in squared standard deviations. The weight
+/// A bell-shaped weight at a squared distance, in squared standard deviations. The weight
 /// is close to exp(−square/2) up to 2 standard deviations, and faster to compute.
 #[inline(always)]
 pub(crate) fn bell(square: f64) -> f64 {
@@ -255,7 +255,7 @@ pub(crate) fn bell(square: f64) -> f64 {
     1.0 / (fourth * fourth)
 }
 
-/// Returns how much two points of a shape differ in normal and elevation, in squared standard
+/// How much two points of a shape differ in normal and elevation, in squared standard
 /// deviations.
 pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let [place, sample] = [place, sample].map(|seen| [seen.normal, seen.position]);

@@ -211,7 +211,7 @@ struct DetailPower {
 }
 
 impl DetailPower {
-    /// Returns the share of the detail that is kept. The variance is doubled for caution, because
+    /// The share of the detail that is kept. The variance is doubled for caution, because
     /// it is estimated from few points.
     fn share(self) -> f64 {
         if self.square > 0.0 {

@@ -19,13 +19,13 @@ pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.625, 0.875],
 ];
 
-/// Returns the position of point `i` of a pixel, in pixels to the right and down from the top left
+/// The position of point `i` of a pixel, in pixels to the right and down from the top left
 /// of the picture.
 pub(crate) fn at(pixel: [usize; 2], i: usize) -> [f64; 2] {
     [0, 1].map(|k: usize| pixel[k] as f64 + OFFSETS[i][k])
 }
 
-/// Returns the squared distance of two positions, in pixels.
+/// The squared distance of two positions, in pixels.
 pub(crate) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (0..2).map(|k| (a[k] - b[k]).powi(2)).sum()
 }
@@ -119,29 +119,29 @@ impl Visible {
         (Self { size, places }, found)
     }
 
-    /// Returns the points of a pixel.
+    /// The points of a pixel.
     pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[SeenPlace] {
         &self.places[self.range([column, row])]
     }
 
-    /// Returns the indices of a pixel's points.
+    /// The indices of a pixel's points.
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR
     }
 
-    /// Returns the pixel at a position, clamped to the picture.
+    /// The pixel at a position, clamped to the picture.
     pub(crate) fn pixel_at(&self, at: [f64; 2]) -> [usize; 2] {
         [0, 1].map(|k: usize| whole(at[k]).min(self.size[k] - 1))
     }
 
-    /// Returns the index of the pixel at a position, in rows from the top.
+    /// The index of the pixel at a position, in rows from the top.
     pub(crate) fn pixel_index(&self, at: [f64; 2]) -> usize {
         let [column, row] = self.pixel_at(at);
         row * self.size[0] + column
     }
 
-    /// Returns the pixels that are at most `radius` to each side of a pixel, in rows from the top.
+    /// The pixels that are at most `radius` to each side of a pixel, in rows from the top.
     pub(crate) fn around(
         &self,
         pixel: [usize; 2],

@@ -17,7 +17,7 @@ const ALL: [SampleMethod; 6] = [
     SampleMethod::Variance,
 ];
 
-/// Returns a ball of radius 1 and reflectance one half, in uniform light.
+/// A ball of radius 1 and reflectance one half, in uniform light.
 fn ball() -> World {
     World {
         shapes: vec![Shape::new(Geometry::Sphere, DAffine3::IDENTITY, 0)],
@@ -55,7 +55,7 @@ fn picture_by_stages(
     render(&paths, &camera([96, 60]), &plan, stage, &|_| {})
 }
 
-/// Returns the share of a pixel that the disc of the ball covers, from 64 × 64 points.
+/// The share of a pixel that the disc of the ball covers, from 64 × 64 points.
 fn covered([column, row]: [usize; 2]) -> f64 {
     // The ball of radius 1 is at a distance of 4, and 48 pixels have the slope 0.4. This is the
     // radius of its disc in pixels.

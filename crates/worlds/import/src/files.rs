@@ -35,7 +35,7 @@ impl Files {
         })
     }
 
-    /// Returns the path of the file or folder `name`, which is searched for in the given folders
+    /// The path of the file or folder `name`, which is searched for in the given folders
     /// in order.
     ///
     /// The name may contain `..`, because only the path to which it resolves must lie below the
@@ -60,7 +60,7 @@ impl Files {
         })
     }
 
-    /// Returns the bytes of a file found by [`Self::find`].
+    /// The bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
         let bytes = read_file(path, self.left.get()).map_err(|error| {
             if matches!(error, ReadError::TooLong { .. }) {
@@ -75,12 +75,12 @@ impl Files {
         Ok(bytes)
     }
 
-    /// Returns the text of a file found by [`Self::find`].
+    /// The text of a file found by [`Self::find`].
     pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
         text(self.read(path)?)
     }
 
-    /// Returns the number of bytes that may still be read or unpacked.
+    /// The number of bytes that may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()
     }

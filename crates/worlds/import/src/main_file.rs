@@ -93,22 +93,22 @@ impl<'a> MainFile<'a> {
         bytes.map_err(|error| self.refused(error))
     }
 
-    /// Returns the folder that contains the file.
+    /// The folder that contains the file.
     pub(crate) fn folder(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).to_owned()
     }
 
-    /// Returns the place of the file as a whole, for messages.
+    /// The place of the file as a whole, for messages.
     pub(crate) fn place(&self) -> SourcePlace {
         SourcePlace::whole(&self.name)
     }
 
-    /// Returns the world, or all causes for refusal.
+    /// The world, or all causes for refusal.
     pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
         self.report.finish(world, &self.files)
     }
 
-    /// Returns the refusal of a scene for a single cause.
+    /// The refusal of a scene for a single cause.
     pub(crate) fn refused(&self, message: impl Into<String>) -> Refused {
         Refused {
             lacks_memory: self.files.lacks_memory(),

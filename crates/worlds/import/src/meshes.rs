@@ -32,7 +32,7 @@ impl From<DetailedMesh> for MeshParts {
 }
 
 impl MeshParts {
-    /// Returns the approximate size in memory, in bytes.
+    /// The approximate size in memory, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let vertex = size_of::<[DVec3; 2]>() + size_of::<DVec2>();
         let all = self.vertices.len() * vertex + size_of_val(self.corners.as_slice());
@@ -133,7 +133,7 @@ impl MeshParts {
         turned
     }
 
-    /// Returns the triangles of the mesh, or `None` if the mesh has no triangles or has arrays that
+    /// The triangles of the mesh, or `None` if the mesh has no triangles or has arrays that
     /// do not match in size.
     pub(crate) fn finish(self) -> Option<Triangles> {
         if self.corners.is_empty() {
@@ -143,7 +143,7 @@ impl MeshParts {
     }
 }
 
-/// Returns a normal of a triangle; the length of this normal is twice the triangle's area.
+/// A normal of a triangle; the length of this normal is twice the triangle's area.
 fn across(vertices: &[DVec3], corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a)

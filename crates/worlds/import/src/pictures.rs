@@ -70,7 +70,7 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
     counted(files, weighted(&channels, color, None, curve))
 }
 
-/// Returns one number for each pixel. Its levels are converted by `light`, and multiplied by the
+/// One number for each pixel. Its levels are converted by `light`, and multiplied by the
 /// factors of the channels, if there are any.
 pub(crate) fn weighted(
     channels: &Channels,

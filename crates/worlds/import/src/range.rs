@@ -43,7 +43,7 @@ pub(crate) fn holds(map: DAffine3) -> bool {
     map.to_cols_array().iter().all(|v| v.abs() <= MAX_NUMBER)
 }
 
-/// Returns the reason why a geometry cannot have the given placement, or `None` if the placement is
+/// The reason why a geometry cannot have the given placement, or `None` if the placement is
 /// allowed. `shines` states whether the shape emits. A sphere that emits must stay a sphere,
 /// because points of a light are drawn uniformly by area.
 pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Option<&'static str> {
@@ -77,7 +77,7 @@ pub(crate) fn is_similarity(map: DMat3) -> bool {
     alike(x, y) && alike(y, z) && is_orthogonal(map)
 }
 
-/// Returns a similarity that replaces a regular map. Both maps take X to the same vector, and Y to
+/// A similarity that replaces a regular map. Both maps take X to the same vector, and Y to
 /// the same side of this vector in the same plane. The similarity mirrors if the map mirrors.
 pub(crate) fn similar(map: DMat3) -> DMat3 {
     let [x, y, z] = axes(map);

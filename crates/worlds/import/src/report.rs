@@ -27,7 +27,7 @@ pub(crate) struct SourcePlace {
 }
 
 impl SourcePlace {
-    /// Returns the place of a file as a whole.
+    /// The place of a file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
         Self {
             file: file.into(),
@@ -35,7 +35,7 @@ impl SourcePlace {
         }
     }
 
-    /// Returns a place in a file.
+    /// A place in a file.
     pub(crate) fn at(file: &Rc<str>, line: usize, column: usize) -> Self {
         let file = Rc::clone(file);
         Self { file, line, column }
@@ -75,7 +75,7 @@ impl Messages {
         }
     }
 
-    /// Returns the kept messages; the last message gives the number of further messages of the same
+    /// The kept messages; the last message gives the number of further messages of the same
     /// kind.
     fn finish(mut self, kind: &str) -> Vec<Note> {
         if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
@@ -127,7 +127,7 @@ impl Report {
         !self.causes.borrow().kept.is_empty()
     }
 
-    /// Returns the world, or all causes.
+    /// The world, or all causes.
     pub(crate) fn finish(self, world: World, files: &Files) -> Result<Imported, Refused> {
         let causes = self.causes.into_inner().finish("causes");
         if causes.is_empty() {
@@ -203,7 +203,7 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// Returns the value of a keyword; `Err` lists the allowed keywords.
+/// The value of a keyword; `Err` lists the allowed keywords.
 pub(crate) fn keyword<T: Copy>(name: &str, word: &str, allowed: &[(&str, T)]) -> Result<T, String> {
     let found = allowed.iter().find(|(known, _)| *known == word);
     found.map(|(_, value)| *value).ok_or_else(|| {

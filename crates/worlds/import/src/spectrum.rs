@@ -21,7 +21,7 @@ pub(crate) enum Role {
     Emission,
 }
 
-/// Returns the linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a
+/// The linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a
 /// value. See [`Color`](crate::Color).
 pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     let mut xyz = [0.0; 3];
@@ -61,7 +61,7 @@ pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// Returns the value at a wavelength before sample `next`, or `None` beyond the ends of the
+/// The value at a wavelength before sample `next`, or `None` beyond the ends of the
 /// spectrum.
 fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;

@@ -14,7 +14,7 @@ fn camera(plugin: &str, inside: &str) -> Camera {
     world(&all).cameras.remove(0)
 }
 
-/// Returns the direction of the ray at a tenth of the film's width and three tenths of its height.
+/// The direction of the ray at a tenth of the film's width and three tenths of its height.
 fn along(camera: &Camera) -> [f64; 3] {
     camera.look([4.0, 6.0], [0.0; 2]).along.to_array()
 }

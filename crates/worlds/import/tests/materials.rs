@@ -6,7 +6,7 @@ use crate::common::{
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 
-/// Returns the texture's value in the first square of a checkerboard.
+/// The texture's value in the first square of a checkerboard.
 fn first(texture: &Texture) -> f64 {
     texture.value(&DVec2::splat(0.1).into())
 }
@@ -47,7 +47,7 @@ fn checkerboards_are_turned_where_they_are_numbers() {
     }
 }
 
-/// Returns the file of a sphere of this material.
+/// The file of a sphere of this material.
 fn principled(inside: &str) -> String {
     format!("<shape type=\"sphere\"><bsdf type=\"principled\">{inside}</bsdf></shape>")
 }

@@ -38,7 +38,7 @@ LightSource "infinite" "string filename" "b.hdr" LightSource "spot" "spectrum I"
 const SQUARE: &str = "#?RADIANCE\n\n-Y 2 +X 2\nabcdabcdabcdabcd";
 const PBRT_PART: &str = "Scale 2 2 2\nMaterial \"dielectric\" \"float eta\" 1.4\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
 
-/// Returns a reproducible random sequence (Marsaglia 2003).
+/// A reproducible random sequence (Marsaglia 2003).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -46,7 +46,7 @@ fn next(state: &mut u64) -> usize {
     usize::try_from(*state >> 40).unwrap()
 }
 
-/// Returns the bytes of texts.
+/// The bytes of texts.
 fn bytes<'a>(files: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a [u8])> {
     let files = files.iter();
     files.map(|(name, text)| (*name, text.as_bytes())).collect()
@@ -127,7 +127,7 @@ fn no_byte_of_obj_makes_it_panic() {
     damage(&bytes(&files), 6000);
 }
 
-/// Returns a glTF scene that uses every feature.
+/// A glTF scene that uses every feature.
 fn everything() -> String {
     let nodes = r#"{"mesh":0,"children":[1,2]},{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[-1,2,1],"camera":0},
 {"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,4,5,1],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;

@@ -23,7 +23,7 @@ fn read(obj: &str, mtl: &str) -> Imported {
     read_all(&text, mtl).unwrap_or_else(|causes| panic!("{causes:#?}"))
 }
 
-/// Returns the material of a single square.
+/// The material of a single square.
 fn material(mtl: &str) -> Material {
     let read = read(
         "usemtl m\nf 1/1 2/2 3/3 4/4\n",
@@ -32,7 +32,7 @@ fn material(mtl: &str) -> Material {
     read.world.materials.into_iter().next().unwrap()
 }
 
-/// Returns the material that both sides of a shape have.
+/// The material that both sides of a shape have.
 fn side(mtl: &str) -> Material {
     let material = material(mtl);
     assert!(matches!(material, Material::TwoSided(_)), "{material:?}");

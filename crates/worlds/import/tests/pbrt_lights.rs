@@ -148,7 +148,7 @@ fn lights_without_an_equal_are_refused() {
     assert_first(&notes(interface), "left out, as in pbrt");
 }
 
-/// Returns a square Radiance picture of equal pixels, with one brighter pixel.
+/// A square Radiance picture of equal pixels, with one brighter pixel.
 fn square(side: usize, bright: usize) -> Vec<u8> {
     let mut bytes = format!("#?RADIANCE\n\n-Y {side} +X {side}\n").into_bytes();
     for i in 0..side * side {

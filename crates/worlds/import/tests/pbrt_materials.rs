@@ -156,7 +156,7 @@ fn interfaces_are_no_surfaces() {
     assert!(world(inside).shapes.is_empty());
 }
 
-/// Returns the value of the reflectance at the point (u, v) of a shape in a world.
+/// The value of the reflectance at the point (u, v) of a shape in a world.
 fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
     let declared = format!("{inside} Material \"diffuse\" \"texture reflectance\" \"t\" {shape}");
     let world = world(&declared);

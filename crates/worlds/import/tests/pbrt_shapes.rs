@@ -12,7 +12,7 @@ use etendue_world::{Geometry, Material, Shape, Texture};
 use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// Returns the front normal of a shape at a point. At this point, a ray from the shape's origin
+/// The front normal of a shape at a point. At this point, a ray from the shape's origin
 /// along `own` leaves the shape. For a mesh, returns the front normal of the first triangle.
 fn front(shape: &Shape, own: DVec3) -> DVec3 {
     let side = if shape.is_flipped { -1.0 } else { 1.0 };

@@ -8,12 +8,12 @@ fn pbrt_causes(text: &str) -> Vec<String> {
     file_causes(&[("a.pbrt", text.as_bytes())])
 }
 
-/// Returns the causes for refusing a scene that consists of the given files.
+/// The causes for refusing a scene that consists of the given files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
     read_files(files).map(drop).unwrap_err()
 }
 
-/// Returns the causes for refusing a triangle with the material `a`.
+/// The causes for refusing a triangle with the material `a`.
 fn mtl_causes(mtl: &str) -> Vec<String> {
     let obj = "mtllib a.mtl\nusemtl a\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
     file_causes(&[("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())])

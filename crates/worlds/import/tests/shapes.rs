@@ -37,7 +37,7 @@ fn read(inside: &str, folder: &Path) -> World {
     read_in(inside, folder, Color::Luminance).unwrap().world
 }
 
-/// Returns a shape with the steps of its placement.
+/// A shape with the steps of its placement.
 fn placed(plugin: &str, steps: &str) -> String {
     let transform = format!("<transform name=\"to_world\">{steps}</transform>");
     format!("<shape type=\"{plugin}\">{transform}</shape>")
@@ -47,13 +47,13 @@ fn file(plugin: &str, name: &str, inside: &str) -> String {
     format!("<shape type=\"{plugin}\"><string name=\"filename\" value=\"{name}\"/>{inside}</shape>")
 }
 
-/// Returns the shading normal of a vertex in the world.
+/// The shading normal of a vertex in the world.
 fn shading_normal(shape: &Shape, vertex: usize) -> [f64; 3] {
     let normal = mesh(shape).normals().unwrap()[vertex];
     turned(shape, normal)
 }
 
-/// Returns a normal of a shape in the world, on its front.
+/// A normal of a shape in the world, on its front.
 fn turned(shape: &Shape, normal: DVec3) -> [f64; 3] {
     let sign = if shape.is_flipped { -1.0 } else { 1.0 };
     let map = shape.to_world.matrix3.inverse().transpose();
@@ -260,7 +260,7 @@ fn shapes_without_a_material_are_grey_or_black() {
     assert!(world.shapes[0].emission.is_none());
 }
 
-/// Returns a mesh file of version 4. It has two meshes of one triangle each, and the second
+/// A mesh file of version 4. It has two meshes of one triangle each, and the second
 /// triangle is higher by 1.
 fn serialized() -> Vec<u8> {
     let mut file = Vec::new();

@@ -4,7 +4,7 @@
 
 use crate::common::{assert_close, assert_refused, cases, causes, notes, world};
 
-/// Returns the rows of the matrix `to_world` of a rectangle.
+/// The rows of the matrix `to_world` of a rectangle.
 fn rows(steps: &str) -> Vec<f64> {
     let shape = format!(
         "<shape type=\"rectangle\"><transform name=\"to_world\">{steps}</transform></shape>"

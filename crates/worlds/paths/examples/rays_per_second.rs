@@ -85,7 +85,7 @@ fn read(file: &str) -> Result<Vec<(Ray, f64)>, Box<dyn Error>> {
     Ok(rays.iter().map(ray).collect())
 }
 
-/// Returns the processor seconds that all threads have used.
+/// The processor seconds that all threads have used.
 fn seconds() -> Result<f64, Box<dyn Error>> {
     let mut nanoseconds = 0.0;
     for task in std::fs::read_dir("/proc/self/task")? {
@@ -95,7 +95,7 @@ fn seconds() -> Result<f64, Box<dyn Error>> {
     Ok(1e-9 * nanoseconds)
 }
 
-/// Returns the memory in use, in bytes.
+/// The memory in use, in bytes.
 fn resident() -> Result<f64, Box<dyn Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -46,7 +46,7 @@ impl<'a> PathNumbers<'a> {
         }
     }
 
-    /// Returns the next `N` numbers.
+    /// The next `N` numbers.
     #[inline]
     pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
         if let Some(words) = self.left[self.used..].first_chunk::<N>() {

@@ -72,7 +72,7 @@ impl<'a> TracedPath<'a> {
 }
 
 impl Paths {
-    /// Returns the approximate memory that the hierarchies over a world take, in bytes.
+    /// The approximate memory that the hierarchies over a world take, in bytes.
     #[must_use]
     pub fn bytes(world: &World) -> f64 {
         SceneGeometry::bytes(world)
@@ -115,7 +115,7 @@ impl Paths {
         sum
     }
 
-    /// Returns the radiance emitted by sources along a ray, as seen by a camera behind `before`
+    /// The radiance emitted by sources along a ray, as seen by a camera behind `before`
     /// surfaces.
     pub(crate) fn shown(&self, ray: &Ray, hit: Option<&Hit>, before: u32) -> f64 {
         if before > 0 || !self.hides_sources {
@@ -200,13 +200,13 @@ impl Paths {
         }
     }
 
-    /// Returns the first hit of a ray that the ray does not pass.
+    /// The first hit of a ray that the ray does not pass.
     pub(crate) fn stopped(&self, ray: &Ray, numbers: &mut PathNumbers<'_>) -> Option<Hit> {
         let passes = |hit: &Hit| self.passes(hit, numbers);
         self.first_unless(ray, [0.0, f64::INFINITY], passes)
     }
 
-    /// Returns the first hit of a ray, at distances within bounds, with a surface that stops at
+    /// The first hit of a ray, at distances within bounds, with a surface that stops at
     /// least half of the light.
     pub(crate) fn mostly_stopped(&self, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         self.first_unless(ray, within, |hit| self.opacity(hit) < 0.5)
@@ -234,7 +234,7 @@ impl Paths {
         }
     }
 
-    /// Returns the share of light that does not pass a surface unchanged.
+    /// The share of light that does not pass a surface unchanged.
     pub(crate) fn opacity(&self, hit: &Hit) -> f64 {
         if self.is_masked {
             self.scatter(hit).opacity(&hit.point)
@@ -243,7 +243,7 @@ impl Paths {
         }
     }
 
-    /// Returns the share of light that passes along a ray up to a distance.
+    /// The share of light that passes along a ray up to a distance.
     #[inline]
     pub(crate) fn transmittance(&self, ray: &Ray, distance: f64) -> f64 {
         let opacity = |hit: &Hit| self.opacity(hit);
@@ -273,7 +273,7 @@ impl Paths {
         true
     }
 
-    /// Returns the material at the hit.
+    /// The material at the hit.
     #[inline]
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
@@ -284,7 +284,7 @@ impl Paths {
         self.lights.of_sky(DVec3::Z).next().is_some()
     }
 
-    /// Returns the light emitted along a ray that hits a light, with its weight in multiple
+    /// The light emitted along a ray that hits a light, with its weight in multiple
     /// importance sampling.
     #[inline]
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
@@ -328,7 +328,7 @@ impl Paths {
     }
 }
 
-/// Moves the items to keep to the front, and returns them.
+/// Moves the kept items to the front, and returns them.
 fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &mut [T] {
     let mut count = items.len();
     let mut i = 0;
@@ -343,7 +343,7 @@ fn keep<T: Copy>(items: &mut [T], mut is_kept: impl FnMut(&mut T) -> bool) -> &m
     &mut items[..count]
 }
 
-/// Returns the weight of a direction with density `own` in multiple importance sampling, where the
+/// The weight of a direction with density `own` in multiple importance sampling, where the
 /// other sampling strategy has density `other`. This is the power heuristic with exponent 2. Rare
 /// directions of a BSDF that find a small light get almost no weight, so a pixel without such
 /// directions is not too dark.

@@ -49,7 +49,7 @@ impl Paths {
         }
     }
 
-    /// Returns the mean of each pixel of a row, and the variance of this mean.
+    /// The mean of each pixel of a row, and the variance of this mean.
     fn row(&self, camera: &Camera, row: usize, samples: u32, seed: u64) -> Vec<[f64; 2]> {
         let (width, samples) = (camera.size[0], samples as usize);
         let mut walks = Vec::with_capacity(STREAM);
@@ -86,7 +86,7 @@ impl Paths {
         pixels
     }
 
-    /// Returns what a ray through a random point of a pixel sees of sources, and the path that
+    /// What a ray through a random point of a pixel sees of sources, and the path that
     /// begins at its hit.
     fn seen<'a>(
         &self,

@@ -29,25 +29,25 @@ pub struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// Returns the index of the shape of the surface.
+    /// The index of the shape of the surface.
     #[must_use]
     pub fn shape(&self) -> usize {
         self.hit.shape
     }
 
-    /// Returns the position in the world.
+    /// The position in the world.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.hit.position
     }
 
-    /// Returns the distance along the ray.
+    /// The distance along the ray.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.hit.distance
     }
 
-    /// Returns the shading normal, on the visible side.
+    /// The shading normal, on the visible side.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         let normal = self.hit.frame.z_axis;
@@ -58,13 +58,13 @@ impl SurfaceHit {
         }
     }
 
-    /// Returns the mirror direction of the ray, of unit length.
+    /// The mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
         self.ray.along.reflect(self.normal())
     }
 
-    /// Returns the direction to the eye, in the frame of the surface.
+    /// The direction to the eye, in the frame of the surface.
     fn wo(&self) -> DVec3 {
         self.hit.frame.transpose() * -self.ray.along
     }
@@ -94,19 +94,19 @@ impl Paths {
         }
     }
 
-    /// Returns the kind of reflection of the surface.
+    /// The kind of reflection of the surface.
     #[must_use]
     pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
         self.scatter(&seen.hit).kind(&seen.hit.point, seen.wo())
     }
 
-    /// Returns the texture factors of base and lobe. A material with one part has only a base.
+    /// The texture factors of base and lobe. A material with one part has only a base.
     #[must_use]
     pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
         self.scatter(&seen.hit).factors(&seen.hit.point, seen.wo())
     }
 
-    /// Returns the radiance, in W m⁻² sr⁻¹, that base and lobe scatter to the eye. The two
+    /// The radiance, in W m⁻² sr⁻¹, that base and lobe scatter to the eye. The two
     /// radiances are means over `paths` paths. Also returns the variance of their sum, divided by
     /// the number of paths. The result depends only on the point, the seed and `number`.
     ///
@@ -159,7 +159,7 @@ impl Paths {
         parts
     }
 
-    /// Returns the nearness of a point to the objects that it reflects and to its blockers. The
+    /// The nearness of a point to the objects that it reflects and to its blockers. The
     /// function traces `rays` rays of each kind. Distances below `nearest` count as `nearest`.
     #[must_use]
     pub fn nearness(

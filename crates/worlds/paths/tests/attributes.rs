@@ -11,7 +11,7 @@ use std::fmt::Write;
 /// Number of squares along each side of the mesh.
 const SIDE: usize = 5;
 
-/// Returns a bumpy square from −1 to 1, seen from above. The colour of a vertex is a linear function
+/// A bumpy square from −1 to 1, seen from above. The colour of a vertex is a linear function
 /// of its place, and the weight of a face states the index of its square.
 fn ply() -> String {
     let (mut rows, mut faces) = (String::new(), String::new());

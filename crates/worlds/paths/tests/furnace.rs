@@ -171,7 +171,7 @@ enum View {
 }
 
 impl View {
-    /// Returns the views in which radiance 1 must be seen.
+    /// The views in which radiance 1 must be seen.
     fn of(behind: Behind) -> &'static [Self] {
         let all = &[
             Self::SphereInside,
@@ -213,7 +213,7 @@ impl View {
     }
 }
 
-/// Returns a cube from −1 to 1 with flat faces.
+/// A cube from −1 to 1 with flat faces.
 fn cube() -> Geometry {
     let sign = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
     let vertices = (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
@@ -232,7 +232,7 @@ fn cube() -> Geometry {
     ))
 }
 
-/// Returns the mean of some pixels, with its standard error.
+/// The mean of some pixels, with its standard error.
 fn mean(picture: &Picture, of: impl Fn(usize) -> bool) -> (f64, f64) {
     let pixels: Vec<usize> = (0..SIDE * SIDE).filter(|i| of(*i)).collect();
     let count = pixels.len() as f64;

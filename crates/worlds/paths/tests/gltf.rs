@@ -17,7 +17,7 @@ struct Formula {
 }
 
 impl Formula {
-    /// Returns the diffuse part of the BRDF, and the factor on its specular part.
+    /// The diffuse part of the BRDF, and the factor on its specular part.
     fn parts(&self, view_half: f64) -> [f64; 2] {
         let schlick = (1.0 - view_half.abs()).powi(5);
         let metal = self.color + (1.0 - self.color) * schlick;
@@ -27,7 +27,7 @@ impl Formula {
         [diffuse, specular]
     }
 
-    /// Returns D V, the specular BRDF of Appendix B.3.
+    /// D V, the specular BRDF of Appendix B.3.
     fn specular(&self, light: DVec3, view: DVec3, half: DVec3) -> f64 {
         let squared = self.roughness.powi(4);
         let d = squared / (PI * (half.z * half.z * (squared - 1.0) + 1.0).powi(2));
@@ -35,7 +35,7 @@ impl Formula {
         d / (v(light) * v(view))
     }
 
-    /// Returns the radiance towards a direction under a sky of radiance 1, by the midpoint rule.
+    /// The radiance towards a direction under a sky of radiance 1, by the midpoint rule.
     /// The radiance is even in the azimuth, so half of the azimuths suffice.
     fn radiance(&self, view: DVec3) -> f64 {
         const STEPS: u32 = 1000;
@@ -66,7 +66,7 @@ impl Formula {
     }
 }
 
-/// Returns the radiance of a material in direction `view` under a sky of radiance 1, with its
+/// The radiance of a material in direction `view` under a sky of radiance 1, with its
 /// standard error.
 fn furnace(material: &str, view: DVec3) -> (f64, f64) {
     let mut world = read("a.gltf", &gltf([material, "{}"]));

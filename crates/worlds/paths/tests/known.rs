@@ -10,7 +10,7 @@ use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Returns a narrow camera at one point that looks at another point.
+/// A narrow camera at one point that looks at another point.
 fn camera(from: DVec3, at: DVec3) -> Camera {
     let up = (at - from).any_orthogonal_vector();
     let camera = Camera::pinhole([from, at, up], 1e-6, [1, 1], [1e-3, 1e6]);
@@ -37,7 +37,7 @@ pub(crate) fn scaled(scale: f64, z: f64) -> DAffine3 {
     )
 }
 
-/// Returns a floor in z = 0 with reflectance one half, and more shapes and lights.
+/// A floor in z = 0 with reflectance one half, and more shapes and lights.
 pub(crate) fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
     shapes.extend(more);
@@ -49,7 +49,7 @@ pub(crate) fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     }
 }
 
-/// Returns the radiance of one pixel, with its standard error.
+/// The radiance of one pixel, with its standard error.
 pub(crate) fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     let picture = Paths::new(world).picture(&camera(from, at), samples, 3, &|_| {});
     (picture.mean[0], picture.variance[0].sqrt())
@@ -71,7 +71,7 @@ pub(crate) fn assert_lit(more: Vec<Shape>, lights: Vec<Light>, expected: f64) {
     assert_seen(&floor(more, lights), ASIDE, DVec3::ZERO, expected);
 }
 
-/// Returns two triangles that cover the square z = 0 with x and y from −1 to 1.
+/// Two triangles that cover the square z = 0 with x and y from −1 to 1.
 pub(crate) fn square() -> Geometry {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
@@ -401,7 +401,7 @@ fn ellipsoids_have_their_own_normals() {
     }
 }
 
-/// Returns a picture of two by two squares with the values 0.2 and 0.8.
+/// A picture of two by two squares with the values 0.2 and 0.8.
 fn board() -> Texture {
     Texture::Checkerboard {
         to_uv: DAffine2::IDENTITY,
@@ -409,7 +409,7 @@ fn board() -> Texture {
     }
 }
 
-/// Returns the placement of a light above the floor that shines down. Its X is X of the floor, and its
+/// The placement of a light above the floor that shines down. Its X is X of the floor, and its
 /// Y is −Y of the floor.
 pub(crate) fn downward(height: f64) -> DAffine3 {
     DAffine3::from_mat3_translation(

@@ -107,7 +107,7 @@ fn masked(opacity: Texture) -> Material {
     }
 }
 
-/// Returns the floor below sheets of these materials, which the camera sees from below.
+/// The floor below sheets of these materials, which the camera sees from below.
 fn sheets(materials: Vec<Material>) -> World {
     let mut world = floor(vec![], vec![]);
     for (i, material) in (0_u32..).zip(materials) {
@@ -238,7 +238,7 @@ usemtl floor\nf 1 2 3 4\nusemtl sheet\nf 5 6 7 8\n";
 
 const MTL: &str = "newmtl floor\nKd 0.5 0.5 0.5\nnewmtl sheet\nKd 0 0 0\nd 0.25\n";
 
-/// Returns the files of a glTF scene with the materials of a floor in z = 0, and of a sheet above.
+/// The files of a glTF scene with the materials of a floor in z = 0, and of a sheet above.
 pub(crate) fn gltf([floor, sheet]: [&str; 2]) -> Vec<(&'static str, String)> {
     // A square in z = 0 from −1 to 1, with texts of 32-bit numbers.
     let data = "AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAACAvwAAgD8AAAAAAAECAAID";

@@ -17,7 +17,7 @@ const QUESTION: Question = Question {
     azimuths: 2,
 };
 
-/// Returns a camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
+/// A camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
 fn camera() -> Camera {
     let from = DVec3::new(0.0, -3.0, 2.0);
     let camera = Camera::pinhole([from, DVec3::ZERO, DVec3::Z], 0.5, [64; 2], [1e-3, 1e6]);
@@ -41,7 +41,7 @@ fn floor(material: usize) -> Shape {
     Shape::new(Geometry::Rectangle, scaled(20.0, 0.0), material)
 }
 
-/// Returns an upright square in the plane of a place (y, z). Its front is towards −Y if `turned` is
+/// An upright square in the plane of a place (y, z). Its front is towards −Y if `turned` is
 /// 1, and towards Y if `turned` is −1.
 fn wall([y, z]: [f64; 2], size: f64, turned: f64, material: usize) -> Shape {
     let axes = [DVec3::X, turned * DVec3::Z, -turned * DVec3::Y].map(|axis| size * axis);
@@ -62,7 +62,7 @@ fn directional() -> Light {
     }
 }
 
-/// Returns the mean flux through the window of each plane, with its standard error over 32
+/// The mean flux through the window of each plane, with its standard error over 32
 /// batches.
 fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
     const BATCHES: u32 = 32;

@@ -79,7 +79,7 @@ pub(crate) fn render(
     ))
 }
 
-/// Returns the number of shading samples, if it is low enough to place the samples.
+/// The number of shading samples, if it is low enough to place the samples.
 fn shading_samples(request: &PictureRequest, camera: &Camera) -> Result<usize, Failure> {
     let pixels = camera.size[0] * camera.size[1];
     let Some(samples) = request.shading_samples else {

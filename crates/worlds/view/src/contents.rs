@@ -40,7 +40,7 @@ impl Contents {
         })
     }
 
-    /// Returns the whole description, line by line.
+    /// The whole description, line by line.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let counts = self.counts.iter();
@@ -62,7 +62,7 @@ impl Contents {
     }
 }
 
-/// Returns the number of each kind of content.
+/// The number of each kind of content.
 fn counts(world: &World) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&'static str, usize)> = Vec::new();
     let mut count = |kind, by| match counts.iter_mut().find(|(known, _)| *known == kind) {

@@ -47,7 +47,7 @@ impl PictureRequest {
         ("variance", Some(SampleMethod::Variance)),
     ];
 
-    /// Returns a reference picture of a scene from its first camera.
+    /// A reference picture of a scene from its first camera.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl PictureRequest {
         }
     }
 
-    /// Returns the default method. If no number of shading samples is given, this is a reference.
+    /// The default method. If no number of shading samples is given, this is a reference.
     #[must_use]
     pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
         shading_samples.map(|_| SampleMethod::Auto)

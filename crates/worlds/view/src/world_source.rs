@@ -51,7 +51,7 @@ pub struct CameraChoice {
 }
 
 impl WorldSource {
-    /// Returns a scene file without changes.
+    /// A scene file without changes.
     #[must_use]
     pub fn new(path: PathBuf, arguments: ArgumentStyle) -> Self {
         Self {
@@ -72,13 +72,13 @@ impl Viewpoint {
     pub const FOV: f64 = 45.0;
 }
 
-/// Returns a message on how to add a camera to a scene.
+/// A message on how to add a camera to a scene.
 pub(crate) fn no_camera(arguments: ArgumentStyle) -> String {
     let [from, at] = ["look_from", "look_at"].map(|name| arguments.name(name));
     format!("the scene has no camera: {from} and {at} add one")
 }
 
-/// Returns a message on how to add a light to a scene.
+/// A message on how to add a light to a scene.
 pub(crate) fn no_light(arguments: ArgumentStyle) -> String {
     format!("the scene has no light: {} adds one", arguments.name("sky"))
 }
@@ -129,7 +129,7 @@ pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     notes.chain(lost_light(&imported.world)).collect()
 }
 
-/// Returns the settings that every result depends on, for its index.
+/// The settings that every result depends on, for its index.
 pub(crate) fn made_from(
     source: &WorldSource,
     imported: &Imported,
@@ -164,7 +164,7 @@ pub(crate) fn finish(
     Ok(())
 }
 
-/// Returns a note if light may reach surfaces on a way that paths from the camera cannot find: from
+/// A note if light may reach surfaces on a way that paths from the camera cannot find: from
 /// a light without size, by way of a mirror or smooth glass.
 fn lost_light(world: &World) -> Option<String> {
     let has_no_size = |light: &Light| !matches!(light, Light::Constant { .. } | Light::Sky(_));
@@ -174,7 +174,7 @@ fn lost_light(world: &World) -> Option<String> {
     })
 }
 
-/// Returns the camera that a viewpoint adds to the scene.
+/// The camera that a viewpoint adds to the scene.
 fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, Failure> {
     let Viewpoint { from, at, up, fov } = *viewpoint;
     let half_width = libm::tan(fov.to_radians() / 2.0);
@@ -205,7 +205,7 @@ pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(
     Err(Failure::bad_input(no_light(arguments)))
 }
 
-/// Returns the requested camera, or the first camera if none is requested, with the requested size.
+/// The requested camera, or the first camera if none is requested, with the requested size.
 pub(crate) fn camera(
     world: &World,
     choice: &CameraChoice,

@@ -82,7 +82,7 @@ impl Camera {
         })
     }
 
-    /// Returns whether rays begin at different points of a lens.
+    /// Whether rays begin at different points of a lens.
     #[must_use]
     pub fn has_lens(&self) -> bool {
         matches!(
@@ -91,7 +91,7 @@ impl Camera {
         )
     }
 
-    /// Returns the ray through a point of the picture and a point of the lens. The first is given
+    /// The ray through a point of the picture and a point of the lens. The first is given
     /// in pixels to the right and down from the picture's top left, and the second by a point of
     /// the unit disc.
     #[inline]

@@ -81,7 +81,7 @@ pub enum Falloff {
 }
 
 impl Falloff {
-    /// Returns the fraction of the intensity at an angle, for a beam and a cutoff.
+    /// The fraction of the intensity at an angle, for a beam and a cutoff.
     #[must_use]
     pub fn share(self, angle: f64, beam: f64, cutoff: f64) -> f64 {
         // If both angles are equal, the beam has a sharp edge.

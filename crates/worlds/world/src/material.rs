@@ -71,7 +71,7 @@ impl Material {
         }
     }
 
-    /// Returns the material that has this opaque material on both sides.
+    /// The material that has this opaque material on both sides.
     #[must_use]
     pub fn on_both_sides(self) -> Self {
         Self::TwoSided(Box::new([self.clone(), self]))

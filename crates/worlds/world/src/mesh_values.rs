@@ -16,7 +16,7 @@ pub struct MeshValues {
 }
 
 impl MeshValues {
-    /// Returns the numbers of a mesh. Returns `None` unless there is one number for each vertex or,
+    /// The numbers of a mesh. Returns `None` unless there is one number for each vertex or,
     /// if they do not belong to vertices, for each triangle.
     #[must_use]
     pub fn new(mesh: Arc<Triangles>, values: Vec<f64>, is_of_vertices: bool) -> Option<Self> {
@@ -46,7 +46,7 @@ impl MeshValues {
         }
     }
 
-    /// Returns the number at a point of the mesh.
+    /// The number at a point of the mesh.
     pub(crate) fn value(&self, point: &TexturePoint) -> f64 {
         if !self.is_of_vertices {
             return self.values.get(point.triangle).copied().unwrap_or(0.0);
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
     use glam::{DVec2, DVec3};
 
-    /// Returns two triangles that share the edge from vertex 0 to vertex 2.
+    /// Two triangles that share the edge from vertex 0 to vertex 2.
     fn square() -> Arc<Triangles> {
         let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y];
         let corners = vec![[0, 1, 2], [0, 2, 3]];

@@ -62,7 +62,7 @@ pub enum Filter {
 }
 
 impl Texture {
-    /// Returns the value at a point of the surface.
+    /// The value at a point of the surface.
     #[inline]
     #[must_use]
     pub fn value(&self, point: &TexturePoint) -> f64 {
@@ -122,7 +122,7 @@ impl Bitmap {
     }
 }
 
-/// Returns the index of a pixel, before it is wrapped; very large texture coordinates are clamped.
+/// The index of a pixel, before it is wrapped; very large texture coordinates are clamped.
 #[expect(clippy::cast_possible_truncation, reason = "the value is clamped")]
 fn whole(x: f64) -> i64 {
     x.floor().clamp(-1e15, 1e15) as i64

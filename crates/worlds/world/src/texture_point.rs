@@ -15,7 +15,7 @@ pub struct TexturePoint {
 }
 
 impl From<DVec2> for TexturePoint {
-    /// Returns a point with the given texture coordinates, which is not on a mesh.
+    /// A point with the given texture coordinates, which is not on a mesh.
     fn from(uv: DVec2) -> Self {
         Self {
             uv,

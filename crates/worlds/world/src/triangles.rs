@@ -47,7 +47,7 @@ impl Triangles {
         &self.vertices
     }
 
-    /// Returns the vertices of each triangle.
+    /// The vertices of each triangle.
     #[inline]
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {

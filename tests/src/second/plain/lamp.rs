@@ -145,7 +145,7 @@ impl Lamp {
         }
     }
 
-    /// Returns the radiance of an environment along a direction.
+    /// The radiance of an environment along a direction.
     pub(super) fn radiance(&self, along: Vector) -> f64 {
         let Kind::Lobes(lobes) = &self.kind else {
             return 0.0;
@@ -169,14 +169,14 @@ impl Lamp {
         matches!(self.kind, Kind::Lobes(_))
     }
 
-    /// Returns where a ray through a point leaves the plane of an environment; `None` for a point
+    /// Where a ray through a point leaves the plane of an environment; `None` for a point
     /// behind this plane, from which light only travels forward.
     pub(super) fn origin(&self, point: Vector, along: Vector) -> Option<Vector> {
         let [.., height] = self.axes.coordinates(point);
         (height > 0.0).then(|| plus(point, -height / dot(along, self.axes.d), along))
     }
 
-    /// Returns the flux that leaves towards a direction per solid angle, and per area if the light
+    /// The flux that leaves towards a direction per solid angle, and per area if the light
     /// has one.
     pub(super) fn emits(&self, to: Vector) -> f64 {
         let [x, y, cosine] = self.axes.components(to);
@@ -194,7 +194,7 @@ impl Lamp {
     }
 }
 
-/// Returns the direction at an angle, given by its cosine, to an axis, and at a share of a turn
+/// The direction at an angle, given by its cosine, to an axis, and at a share of a turn
 /// around the axis.
 fn around_axis(axis: Vector, aside: Vector, [cosine, around]: [f64; 2]) -> Vector {
     let across = unit(cross(axis, aside));

@@ -80,7 +80,7 @@ impl PlainMask {
         Some(Self { axes, what })
     }
 
-    /// Returns the share of light that passes on a ray between two of its distances.
+    /// The share of light that passes on a ray between two of its distances.
     pub(super) fn passes(&self, start: Vector, along: Vector, [from, to]: [f64; 2]) -> f64 {
         let [.., height] = self.axes.coordinates(start);
         let t = -height / dot(along, self.axes.d);

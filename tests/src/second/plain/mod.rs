@@ -107,7 +107,7 @@ impl Estimate {
         self.count >= MIN_LIT
     }
 
-    /// Returns the relative error, or infinity if it is not known.
+    /// The relative error, or infinity if it is not known.
     fn noise(&self) -> f64 {
         if self.is_lit() {
             self.error / self.mean
@@ -270,7 +270,7 @@ fn judged(mut world: PlainWorld, scene: &Scene, photons: u64) -> Pair {
     found
 }
 
-/// Returns an estimate by as many rays as it needs, from the first number to the largest.
+/// An estimate by as many rays as it needs, from the first number to the largest.
 fn precise([first, most]: [u64; 2], estimate: impl Fn(u64) -> Estimate) -> Estimate {
     let mut rays = first;
     loop {
@@ -293,7 +293,7 @@ fn precise([first, most]: [u64; 2], estimate: impl Fn(u64) -> Estimate) -> Estim
     }
 }
 
-/// Returns the light by photons or backward rays through the resolved scene, whichever have less
+/// The light by photons or backward rays through the resolved scene, whichever have less
 /// noise.
 fn by_photons(scene: &Scene, seed: u64, [first, most]: [u64; 2]) -> Estimate {
     let measured = |is_backward: bool, seed: u64, photons: u64| {
@@ -318,7 +318,7 @@ fn by_photons(scene: &Scene, seed: u64, [first, most]: [u64; 2]) -> Estimate {
     })
 }
 
-/// Returns the light of all lamps by paths.
+/// The light of all lamps by paths.
 fn by_paths(world: &PlainWorld, seed: u64, least: u64) -> Estimate {
     let [first, most, most_slow] = PATHS;
     let is_slow = world.surfaces.iter().any(world::PlainSurface::is_slow);
@@ -332,7 +332,7 @@ fn by_paths(world: &PlainWorld, seed: u64, least: u64) -> Estimate {
     })
 }
 
-/// Returns the choice of paths with the smaller relative error.
+/// The choice of paths with the smaller relative error.
 fn choice(world: &PlainWorld, lamp: &Lamp) -> Choice {
     if !world.connects(lamp) {
         return Choice::Forward;
@@ -368,7 +368,7 @@ fn of_lamp(
     }
 }
 
-/// Returns a point of a Kronecker sequence: multiples of powers of the generalised golden ratio,
+/// A point of a Kronecker sequence: multiples of powers of the generalised golden ratio,
 /// the root of x^(n + 1) = x + 1, modulo 1.
 fn shifted(index: u32, shift: &[f64; NUMBERS]) -> [f64; NUMBERS] {
     let golden = (0..60).fold(1.0_f64, |x, _| (x + 1.0).powf(1.0 / (NUMBERS as f64 + 1.0)));

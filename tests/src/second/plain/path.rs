@@ -59,7 +59,7 @@ pub(super) enum Choice {
 }
 
 impl PlainWorld {
-    /// Returns the light that a path brings into the window: flux times (1 + u² + v²)² times the
+    /// The light that a path brings into the window: flux times (1 + u² + v²)² times the
     /// window. The mean over the unit cube is the spectrum at zero frequency, ∫ L W.
     pub(super) fn light(&self, lamp: &Lamp, choice: Choice, numbers: &[f64; NUMBERS]) -> f64 {
         let mut draws = Draws { numbers, used: 0 };
@@ -156,7 +156,7 @@ impl PlainWorld {
         })
     }
 
-    /// Returns the light after its next surface. If the point where it `arrives` is given, light is
+    /// The light after its next surface. If the point where it `arrives` is given, light is
     /// per area there; it is lost if it meets another part of the surface before.
     fn visit(
         &self,
@@ -233,7 +233,7 @@ impl PlainWorld {
         Some(light.flux(along, point, passes * area) * weight / dz.powi(4))
     }
 
-    /// Returns the light of an environment at a plane of the first leg, for a ray of the window.
+    /// The light of an environment at a plane of the first leg, for a ray of the window.
     fn environment(&self, lamp: &Lamp, draws: &mut Draws<'_>) -> Option<f64> {
         let (point, along, weight) = self.ray(draws);
         let from = lamp.origin(point, along)?;
@@ -260,14 +260,14 @@ impl PlainWorld {
         (self.plane.point(at), along, weight)
     }
 
-    /// Returns a point of the window's support in the plane, and the area of the support.
+    /// A point of the window's support in the plane, and the area of the support.
     fn place(&self, [a, b]: [f64; 2]) -> (Vector, f64) {
         let [x, y] = [self.window[0], self.window[1]].map(|profile| profile.half_width());
         let at = [(2.0 * a - 1.0) * x, (2.0 * b - 1.0) * y, 0.0];
         (at, 4.0 * x * y)
     }
 
-    /// Returns a point of the part of the plane from which light of a point has slopes in the window,
+    /// A point of the part of the plane from which light of a point has slopes in the window,
     /// and the area of this part.
     fn lit(&self, from: Vector, numbers: [f64; 2]) -> Option<(Vector, f64)> {
         let [x, y, z] = self.plane.coordinates(from);
@@ -290,12 +290,12 @@ impl PlainWorld {
         each.map(|(profile, t)| value(profile, t, "")).product()
     }
 
-    /// Returns the distance up to which hits are the origin of a ray itself.
+    /// The distance up to which hits are the origin of a ray itself.
     fn begins(&self, at: Vector) -> f64 {
         START * (1.0 + length(at) + length(self.plane.origin))
     }
 
-    /// Returns the share of light that travels a distance. The surface `end` stops no light; if the
+    /// The share of light that travels a distance. The surface `end` stops no light; if the
     /// light arrives at it (`arrives`), it must be the first hit.
     fn passes(
         &self,
@@ -331,7 +331,7 @@ impl PlainWorld {
 }
 
 impl Light<'_> {
-    /// Returns the flux that reaches a point through an area orthogonal to the direction; light that
+    /// The flux that reaches a point through an area orthogonal to the direction; light that
     /// has only one direction does not spread, so the area is a share of its flux.
     fn flux(&self, along: Vector, point: Vector, area: f64) -> f64 {
         // Some BRDFs take long.

@@ -71,7 +71,7 @@ pub(super) enum Leaves {
 }
 
 impl PlainWorld {
-    /// Returns the world of a scene file whose first plane is at a distance on the central ray, or
+    /// The world of a scene file whose first plane is at a distance on the central ray, or
     /// `None` if the file uses something that the plain tracer does not have: meshes, pictures, ray
     /// files, and other planes.
     pub(super) fn new(file: &SceneFile) -> Option<Self> {
@@ -248,7 +248,7 @@ impl PlainSurface {
         }
     }
 
-    /// Returns the distances of hits along a ray, nearest first.
+    /// The distances of hits along a ray, nearest first.
     pub(super) fn hits(&self, start: Vector, along: Vector) -> Vec<f64> {
         match &self.shape {
             Shape::Smooth(smooth) => smooth.hits(start, along),
@@ -262,7 +262,7 @@ impl PlainSurface {
         }
     }
 
-    /// Returns the normal on the side that the surface faces.
+    /// The normal on the side that the surface faces.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         match &self.shape {
             Shape::Rectangle(axes, _) => axes.d,
@@ -270,7 +270,7 @@ impl PlainSurface {
         }
     }
 
-    /// Returns a point for two uniform numbers, and the area that one unit of them covers there.
+    /// A point for two uniform numbers, and the area that one unit of them covers there.
     pub(super) fn point(&self, [a, b]: [f64; 2]) -> (Vector, f64) {
         match &self.shape {
             Shape::Rectangle(axes, size) => {
@@ -286,7 +286,7 @@ impl PlainSurface {
         }
     }
 
-    /// Returns how light that arrives at a point along a direction leaves the surface.
+    /// How light that arrives at a point along a direction leaves the surface.
     pub(super) fn leaves(&self, point: Vector, along: Vector) -> Leaves {
         let normal = self.normal(point);
         let through = |to: Option<Vector>| to.map_or(Leaves::Nowhere, Leaves::Along);
@@ -336,7 +336,7 @@ impl PlainSurface {
     }
 }
 
-/// Returns the axis of the path along which a surface with this normal has its edges: X, or Y if
+/// The axis of the path along which a surface with this normal has its edges: X, or Y if
 /// the normal is along X.
 fn edge(normal: Vector, path: &Axes) -> Vector {
     let aside = length(plus(path.x, -dot(path.x, normal), normal));

@@ -8,7 +8,7 @@ use etendue_field::{Complex, cis};
 use etendue_theory::shading::cosine_hat;
 use std::f64::consts::{PI, TAU};
 
-/// Returns the spectrum of the differential irradiance dE' in the frames of the local normals:
+/// The spectrum of the differential irradiance dE' in the frames of the local normals:
 /// 1/|k| env^(Ωx/k) cos⁺^(Ωθ − Ωx/k).
 pub(crate) fn differential_irradiance(
     k: f64,
@@ -19,7 +19,7 @@ pub(crate) fn differential_irradiance(
     environment(x / k) * (cosine_hat(theta - x / k) / k.abs())
 }
 
-/// Returns the spectrum of the differential irradiance dE'_r after the mirror step: 1/|k|
+/// The spectrum of the differential irradiance dE'_r after the mirror step: 1/|k|
 /// env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
 ///
 /// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺^(Ωx/k − Ωθ). The printed formula

@@ -20,7 +20,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// Returns the frequencies of a Fourier series on the full circle, which are 1/2π apart. Sums
+    /// The frequencies of a Fourier series on the full circle, which are 1/2π apart. Sums
     /// over these frequencies are exact for factors on the half-circle and light within ± 3π/2.
     pub(crate) fn circle(reach: f64) -> Self {
         let spacing = 1.0 / TAU;
@@ -39,7 +39,7 @@ impl Lattice {
     }
 }
 
-/// Returns the spectrum at Ω of f(θ) ℓ(x, θ), which is ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al.
+/// The spectrum at Ω of f(θ) ℓ(x, θ), which is ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al.
 /// 2005, Eq. 12, where ⊗ is a convolution in 2D with a Dirac along Ωx).
 ///
 /// `factor` is f̂, in cycles per radian; `before` is L.
@@ -63,7 +63,7 @@ pub(crate) struct TextureWave {
     pub(crate) amplitude: Complex,
 }
 
-/// Returns the spectrum at Ω of T(s) ℓ(s, θ), where the texture T is a sum of waves: Σ A L(Ωx − f,
+/// The spectrum at Ω of T(s) ℓ(s, θ), where the texture T is a sum of waves: Σ A L(Ωx − f,
 /// Ωθ) (Durand et al. 2005, Eq. 18).
 ///
 /// A texture depends only on positions, so it may be applied before or after the step back from the
@@ -80,7 +80,7 @@ pub(crate) fn texture(
         .sum()
 }
 
-/// Returns the spectrum at Ω after reflection by a BRDF ρ(s, δ) that varies in space. The spectrum
+/// The spectrum at Ω after reflection by a BRDF ρ(s, δ) that varies in space. The spectrum
 /// is ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, which is a convolution only along Ωx (the "semi-convolution" of
 /// Durand et al. 2005, section 4.5).
 ///

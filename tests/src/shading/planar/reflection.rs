@@ -55,7 +55,7 @@ pub(crate) enum Factor<'a> {
 }
 
 impl Factor<'_> {
-    /// Returns the spectrum at Ω of the product of a light field and this factor.
+    /// The spectrum at Ω of the product of a light field and this factor.
     fn times(&self, lattice: &Lattice, omega: [f64; 2], before: PlanarSpectrum<'_>) -> Complex {
         match self {
             Self::One => before(omega),
@@ -97,7 +97,7 @@ pub(crate) struct PlanarReflection<'a> {
 }
 
 impl PlanarReflection<'_> {
-    /// Returns the spectrum at Ω after a step, for light with the spectrum `before` in the light
+    /// The spectrum at Ω after a step, for light with the spectrum `before` in the light
     /// frame.
     ///
     /// Like the [maps](etendue_theory::geometry), the spectrum holds to first order in the size of the
@@ -141,7 +141,7 @@ impl PlanarReflection<'_> {
         self.terms.iter().map(of).sum()
     }
 
-    /// Returns the spectrum at Ω after step 3, for one term of the BRDF.
+    /// The spectrum at Ω after step 3, for one term of the BRDF.
     fn lit(
         &self,
         term: &SeparableTerm<'_>,
@@ -152,7 +152,7 @@ impl PlanarReflection<'_> {
         term.before.times(&self.lattice, omega, &local)
     }
 
-    /// Returns the contribution of one term of the BRDF to the spectrum after step 5. The product
+    /// The contribution of one term of the BRDF to the spectrum after step 5. The product
     /// with the lobe is Eq. 16 of Durand et al. 2005, and the weights of terms are textures
     /// (section 4.5).
     fn reflected(

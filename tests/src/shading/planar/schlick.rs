@@ -12,7 +12,7 @@ impl Schlick {
         self.0 + (1.0 - self.0) * (1.0 - libm::cos(theta)).powi(5)
     }
 
-    /// Returns the transform of F(θ) cos⁺(θ): F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁, with the
+    /// The transform of F(θ) cos⁺(θ): F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁, with the
     /// transforms Cₙ of cosⁿ.
     pub(crate) fn cosine_hat(self, omega: f64) -> f64 {
         let binomial = [1.0, -5.0, 10.0, -10.0, 5.0, -1.0].into_iter();

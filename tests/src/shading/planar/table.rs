@@ -4,7 +4,7 @@ use etendue_field::AngleTable;
 use etendue_theory::shading::even_transform;
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
+/// The transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
 /// in cycles per radian. The product is the factor f(θi) or h(θo) of a separable BRDF (Durand et
 /// al. 2005, section 4.3). If the factor includes the cosine, g is the cosine. The transform is
 /// real and even.

@@ -10,7 +10,7 @@ use crate::variance::{AxisPairs, Sampler};
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::path::{Path, PathBuf};
 
-/// Returns every sampler that is not a file.
+/// Every sampler that is not a file.
 fn samplers() -> [Sampler; 6] {
     [
         Sampler::Independent,
@@ -22,7 +22,7 @@ fn samplers() -> [Sampler; 6] {
     ]
 }
 
-/// Returns a scene of the folder `scenes/variance`, with some of its text replaced.
+/// A scene of the folder `scenes/variance`, with some of its text replaced.
 fn scene(name: &str, edits: &[(&str, &str)]) -> Scene {
     let folder = PathBuf::from(concat!(
         env!("CARGO_MANIFEST_DIR"),

@@ -34,7 +34,7 @@ fn power(set: &[WindowPoint], m: [i64; 4]) -> f64 {
     sum.norm_sqr() / (set.len() as f64).powi(2)
 }
 
-/// Returns the largest difference between the expected power and the mean of periodograms, in
+/// The largest difference between the expected power and the mean of periodograms, in
 /// standard errors.
 fn largest_difference(sampler: &Sampler, drawn: &Sampler, count: usize) -> f64 {
     let expected = ExpectedPower::new(sampler, count).unwrap();

@@ -15,7 +15,7 @@ const MAX: usize = 8;
 
 const FEWER: (&str, &str) = ("photons: 4_194_304", "photons: 524_288");
 
-/// Returns the reports of samplers at plane `index`, and the mean, σ² and noise of the radiance.
+/// The reports of samplers at plane `index`, and the mean, σ² and noise of the radiance.
 fn study(scene: &Scene, index: usize, counts: &[usize]) -> (Vec<SamplerReport>, [f64; 6]) {
     let scene = with_box_window(scene, index, MAX);
     let radiance = WindowRadiance::new(&scene).unwrap();

@@ -33,7 +33,7 @@ fn lamp() -> Light {
 /// The light in these tests has these variances S along x, y, u and v.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
-/// Returns the standard deviations of the Gaussian window that replaces an opening of the given
+/// The standard deviations of the Gaussian window that replaces an opening of the given
 /// half-width.
 fn open(half: f64) -> [f64; 4] {
     let endless = f64::INFINITY;
@@ -51,7 +51,7 @@ fn seen() -> Window {
     }
 }
 
-/// Returns the spectral covariance C of a field with the covariance S, after the window [`seen`].
+/// The spectral covariance C of a field with the covariance S, after the window [`seen`].
 fn windowed(field: &Matrix<4>) -> Matrix<4> {
     let stds = [0.5, 0.4, 0.3, 0.2].map(|width: f64| width / TAU.sqrt());
     power_spectrum(&gaussian_window(field, stds).unwrap()).unwrap()
@@ -100,7 +100,7 @@ fn patch() -> Patch {
     }
 }
 
-/// Returns a plane perpendicular to the mirrored central ray, 0.7 m behind the surface.
+/// A plane perpendicular to the mirrored central ray, 0.7 m behind the surface.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;

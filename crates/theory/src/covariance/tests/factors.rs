@@ -6,7 +6,7 @@ use etendue_field::{
 };
 use std::f64::consts::PI;
 
-/// Returns ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
+/// ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
 fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     let n = 200_000;
     let step = 2.0 * half / f64::from(n);

@@ -6,7 +6,7 @@ mod operators;
 
 use crate::geometry::{AffineMap, Matrix};
 
-/// Returns the largest difference between entries of two matrices, relative to the geometric mean
+/// The largest difference between entries of two matrices, relative to the geometric mean
 /// of the corresponding diagonal entries.
 fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
     let entries = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
@@ -14,7 +14,7 @@ fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-/// Returns the map of a rotation of the axes, a mirror reflection by a curved surface, and travel.
+/// The map of a rotation of the axes, a mirror reflection by a curved surface, and travel.
 /// Because of the rotation, no entry of the map's matrix is zero.
 fn bent() -> AffineMap<4> {
     let shape = [[0.7, 0.2], [0.2, -0.4]];

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
 const WINDOW: [f64; 4] = [0.2, 0.3, 0.25, 0.15];
 
-/// Returns the spectral covariance of a Gaussian window with the standard deviations of these
+/// The spectral covariance of a Gaussian window with the standard deviations of these
 /// tests.
 fn window() -> Matrix<4> {
     diagonal(WINDOW.map(|s: f64| 1.0 / (8.0 * PI * PI * s * s)))
@@ -19,7 +19,7 @@ fn lobe() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.01, 0.006])
 }
 
-/// Returns the spectral covariance C of a Gaussian light field, computed by mapping, windowing and
+/// The spectral covariance C of a Gaussian light field, computed by mapping, windowing and
 /// blurring the field's covariance S.
 fn followed() -> Matrix<4> {
     let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));

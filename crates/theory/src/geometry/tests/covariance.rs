@@ -9,7 +9,7 @@ use crate::geometry::matrix::{self, Matrix, congruent, diagonal, dot, product, s
 use std::array;
 use std::f64::consts::{PI, TAU};
 
-/// Returns the covariance after a product with a Gaussian window of standard deviations `std`, one
+/// The covariance after a product with a Gaussian window of standard deviations `std`, one
 /// for each coordinate. The product changes S⁻¹ to S⁻¹ + diag(1/std²). Infinite standard deviations
 /// have no effect.
 ///
@@ -25,7 +25,7 @@ pub(crate) fn gaussian_window<const N: usize>(
     Some(product(before, &kept))
 }
 
-/// Returns the covariance after a convolution over angles with a Gaussian of standard deviation
+/// The covariance after a convolution over angles with a Gaussian of standard deviation
 /// `std`, in radians: S_θθ and, in 4D, S_φφ increase by std². The Gaussian represents a glossy
 /// lobe of unit integral (Durand et al. 2005, Eq. 16).
 pub(crate) fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> {
@@ -33,7 +33,7 @@ pub(crate) fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Mat
     sum(before, &diagonal(blur))
 }
 
-/// Returns S⁻¹/8π², the covariance of |L|² for a Gaussian field of covariance S. The covariance of
+/// S⁻¹/8π², the covariance of |L|² for a Gaussian field of covariance S. The covariance of
 /// |L| is twice as large.
 ///
 /// The result is in cycles per unit, squared. Returns `None` for a singular S, whose spectrum is
@@ -43,7 +43,7 @@ pub(crate) fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix
     Some(inverse.map(|row| row.map(|entry| entry / (8.0 * PI * PI))))
 }
 
-/// Returns the spectrum of exp(−½ zᵀ S⁻¹ z): (2π)^(N/2) √det S exp(−2π² Ωᵀ S Ω).
+/// The spectrum of exp(−½ zᵀ S⁻¹ z): (2π)^(N/2) √det S exp(−2π² Ωᵀ S Ω).
 pub(crate) fn gaussian_spectrum<const N: usize>(field: &Matrix<N>, omega: [f64; N]) -> f64 {
     let volume = congruent(&diagonal([TAU.sqrt(); N]), field);
     let exponent = -2.0 * PI * PI * dot(&omega, &times(field, &omega));

@@ -4,7 +4,7 @@
 use crate::geometry::{AffineMap, Matrix, Media};
 
 impl AffineMap<2> {
-    /// Returns the map of the reflection by a mirror that the central ray meets at the angle θ₀.
+    /// The map of the reflection by a mirror that the central ray meets at the angle θ₀.
     /// The curvature k, in 1/m, is positive for a convex mirror.
     ///
     /// The event consists of the steps incidence, curvature, mirror, back, and outgoing at −θ₀. The
@@ -18,7 +18,7 @@ impl AffineMap<2> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Returns the distance of the focus behind the map's end, −A₀₀/A₁₀ metres. Rays that were
+    /// The distance of the focus behind the map's end, −A₀₀/A₁₀ metres. Rays that were
     /// parallel before the map meet at the focus. The distance is negative for a virtual focus.
     /// Returns `None` if the rays stay parallel.
     pub(crate) fn focus(&self) -> Option<f64> {
@@ -27,7 +27,7 @@ impl AffineMap<2> {
         distance.is_finite().then_some(distance)
     }
 
-    /// Returns the map of the refraction at a surface that the central ray meets at the angle θ₀.
+    /// The map of the refraction at a surface that the central ray meets at the angle θ₀.
     /// The curvature k, in 1/m, is positive if the surface is convex on the side of the incident
     /// light.
     ///
@@ -42,7 +42,7 @@ impl AffineMap<2> {
         Some(onto.then(&local).then(&off))
     }
 
-    /// Returns the map of a caustic, which is a mirror reflection followed by travel over a
+    /// The map of a caustic, which is a mirror reflection followed by travel over a
     /// distance in metres (Durand et al. 2005, Fig. 11).
     ///
     /// The [focus](Self::focus) of the reflection is at the distance −cos θ₀/2k. At this distance,
@@ -53,7 +53,7 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// Returns the map of the reflection by a mirror with the shape operator M (see
+    /// The map of the reflection by a mirror with the shape operator M (see
     /// [`curvature`](Self::curvature)). The central ray meets the mirror at the angle θ₀.
     ///
     /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀
@@ -67,7 +67,7 @@ impl AffineMap<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Returns the map of the refraction at a surface with the shape operator M. The central ray
+    /// The map of the refraction at a surface with the shape operator M. The central ray
     /// meets the surface at the angle θ₀. The event is composed of the same steps as in 2D; the
     /// step back uses the cosine of θ₂.
     pub(crate) fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {

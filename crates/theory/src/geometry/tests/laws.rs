@@ -157,7 +157,7 @@ fn specular_steps_keep_etendue() {
     assert!(nan.symplectic_defect(1.0).is_nan());
 }
 
-/// Returns the map from the frame (X, Y, D) to (−X, Y, −D), for light that returns along its path.
+/// The map from the frame (X, Y, D) to (−X, Y, −D), for light that returns along its path.
 fn turn_round() -> AffineMap<4> {
     AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],

@@ -26,21 +26,21 @@ const OUT_OF_GLASS: Media = Media {
     after: 1.0,
 };
 
-/// Returns the largest difference between two maps, entry by entry.
+/// The largest difference between two maps, entry by entry.
 fn apart<const N: usize>(a: &AffineMap<N>, b: &AffineMap<N>) -> f64 {
     let offsets = (0..N).map(|i| (a.offset[i] - b.offset[i]).abs());
     let entries = (0..N * N).map(|n| (a.matrix[n / N][n % N] - b.matrix[n / N][n % N]).abs());
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Returns a quasi-random number in (−1, 1), which is a multiple of the square root of a prime. The
+/// A quasi-random number in (−1, 1), which is a multiple of the square root of a prime. The
 /// numbers are uniform for each coordinate and for all coordinates together.
 fn scatter(index: usize, coordinate: usize) -> f64 {
     let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
     2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0
 }
 
-/// Returns rays spread over a neighbourhood of size e.
+/// Rays spread over a neighbourhood of size e.
 fn bundle<const N: usize>(count: usize, e: f64) -> impl Iterator<Item = [f64; N]> {
     (0..count).map(move |i| std::array::from_fn(|k| e * scatter(i, k)))
 }

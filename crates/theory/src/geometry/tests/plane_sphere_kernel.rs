@@ -10,7 +10,7 @@ const STEP: f64 = 1.0 / 32.0;
 /// of a cycle per radian.
 const MAX_FREQUENCY: f64 = 1e5;
 
-/// Returns the kernel of the change from slopes to angles, K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t))
+/// The kernel of the change from slopes to angles, K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t))
 /// dt over |t| < π/2. K is real. The spectrum in angles is L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv)
 /// K(Ωv, Ωθ) dΩv (Durand et al. 2005, section 4, who plot it in Fig. 8 but give no formula).
 ///
@@ -58,7 +58,7 @@ fn integral(f: impl Fn(f64) -> f64) -> f64 {
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
-/// Returns K for b ≥ 1 from the values of K at two smaller b. For m = b/2, this is the recurrence
+/// K for b ≥ 1 from the values of K at two smaller b. For m = b/2, this is the recurrence
 /// of Tricomi's U (DLMF 13.3.7), which is (m + 1) K(m + 1) = 2(a − m) K(m) − (m − 1) K(m − 1). Both
 /// solutions of this recurrence oscillate if b > a. If b < a, K is the solution that grows, so the
 /// recurrence is stable.

@@ -9,13 +9,13 @@ use etendue_field::Complex;
 use std::f64::consts::TAU;
 
 impl Edition {
-    /// Returns the step of curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ,
+    /// The step of curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ,
     /// Ωθ).
     fn curvature(self, k: f64) -> SpectrumMap<2> {
         AffineMap::<2>::curvature(self.sign() * k).spectrum_map()
     }
 
-    /// Returns the step back from the frames of the local normals. It is the inverse of
+    /// The step back from the frames of the local normals. It is the inverse of
     /// [`curvature`](Self::curvature), as the text of step 6 says.
     fn back(self, k: f64) -> SpectrumMap<2> {
         AffineMap::<2>::back(self.sign() * k).spectrum_map()

@@ -8,7 +8,7 @@ use super::*;
 /// Half the size of the largest tested neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// Returns the largest error of a map, divided by e, for rays in a neighbourhood of size e. Also
+/// The largest error of a map, divided by e, for rays in a neighbourhood of size e. Also
 /// returns the power of e with which the error falls.
 pub(super) fn error_and_order<const N: usize>(
     map: &AffineMap<N>,

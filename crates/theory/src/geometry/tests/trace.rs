@@ -8,7 +8,7 @@ fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Returns a + t b.
+/// A + t b.
 fn along(a: Vector, t: f64, b: Vector) -> Vector {
     [0, 1, 2].map(|i| a[i] + t * b[i])
 }
@@ -23,20 +23,20 @@ fn scaled(a: Vector, t: f64) -> Vector {
 pub(super) struct LightAxes([Vector; 3]);
 
 impl LightAxes {
-    /// Returns the axes for light that seems to come from the angle θ, with D = −(sin θ T + cos θ
+    /// The axes for light that seems to come from the angle θ, with D = −(sin θ T + cos θ
     /// N).
     pub(super) fn coming(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[-cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, -cos]])
     }
 
-    /// Returns the axes for light that leaves at the angle θ, with D = sin θ T + cos θ N.
+    /// The axes for light that leaves at the angle θ, with D = sin θ T + cos θ N.
     pub(super) fn leaving(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     }
 
-    /// Returns the axes with X and Y turned about D, from X towards Y.
+    /// The axes with X and Y turned about D, from X towards Y.
     pub(super) fn turned(&self, angle: f64) -> Self {
         let Self([x, y, d]) = *self;
         let (sin, cos) = libm::sincos(angle);
@@ -44,7 +44,7 @@ impl LightAxes {
         Self([turned, along(scaled(y, cos), -sin, x), d])
     }
 
-    /// Returns the origin and unit direction of a ray.
+    /// The origin and unit direction of a ray.
     pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> [Vector; 2] {
         let Self([ex, ey, d]) = *self;
         let direction = along(along(d, u, ex), v, ey);
@@ -53,7 +53,7 @@ impl LightAxes {
         [origin, scaled(direction, 1.0 / length)]
     }
 
-    /// Returns the two-plane coordinates of a ray.
+    /// The two-plane coordinates of a ray.
     pub(super) fn coordinates(&self, [point, direction]: [Vector; 2]) -> [f64; 4] {
         let Self([ex, ey, d]) = *self;
         let forward = dot(direction, d);
@@ -81,7 +81,7 @@ impl GraphSurface {
         self.0.map(|row| dot(row, p))
     }
 
-    /// Returns the point near the origin where a ray meets the surface, and the unit normal at this
+    /// The point near the origin where a ray meets the surface, and the unit normal at this
     /// point.
     fn hit(&self, [o, d]: [Vector; 2]) -> [Vector; 2] {
         let a = dot(d, self.quadratic(d));

@@ -31,7 +31,7 @@ impl<'a> WalkedRay<'a> {
         walk
     }
 
-    /// Returns the fraction of the light along a ray that passes all masks.
+    /// The fraction of the light along a ray that passes all masks.
     fn passes(&self, ray: &TwoPlane) -> f64 {
         let shading = ray.secant_squared().powi(-2 * self.cosines);
         let masks = self.masks.iter().map(|(distance, mask)| {

@@ -27,7 +27,7 @@ fn with_cosine(mut chain: Chain) -> Chain {
     chain
 }
 
-/// Returns the largest difference between `value` and the sum over quasi-random rays, divided by
+/// The largest difference between `value` and the sum over quasi-random rays, divided by
 /// the chain's spectrum at zero frequency without masks.
 fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
     let truth = brute_force(chain, &hann(), &FREQUENCIES, RAYS);
@@ -160,7 +160,7 @@ fn planted_faults_are_seen() {
     });
 }
 
-/// Returns a Gaussian window that is truncated where its value is 2e-16.
+/// A Gaussian window that is truncated where its value is 2e-16.
 fn gaussian_window(a: f64, b: f64) -> Window {
     let profile = |width| Profile::Gaussian {
         width,

@@ -24,7 +24,7 @@ fn hann() -> Window {
     window(Profile::Hann(0.5), Profile::Hann(0.3))
 }
 
-/// Returns the spectrum of a chain at zero frequency.
+/// The spectrum of a chain at zero frequency.
 fn zero(chain: &Chain) -> f64 {
     at(chain, &hann(), [0.0; 4]).re
 }

@@ -51,7 +51,7 @@ impl SlopePower {
         }
     }
 
-    /// Returns the lobe's value at slopes with 1 + u² + v² = `secant_squared`.
+    /// The lobe's value at slopes with 1 + u² + v² = `secant_squared`.
     fn value(&self, secant_squared: f64) -> f64 {
         match *self {
             Self::Flat => 1.0,
@@ -84,7 +84,7 @@ impl NodeCounts {
         }
     }
 
-    /// Returns the number of panels for an interval of the given length, and the number of nodes
+    /// The number of panels for an interval of the given length, and the number of nodes
     /// in each panel.
     fn of(&self, length: f64) -> [usize; 2] {
         let ratio = self.longest / length.abs();
@@ -96,7 +96,7 @@ impl NodeCounts {
     }
 }
 
-/// Returns the number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
+/// The number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
 /// the error e^(−[`NATS`]).
 ///
 /// The error of the rule with n nodes is ρ^(−2n) times the largest value of the integrand on an
@@ -127,7 +127,7 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings. The frequencies of these
+    /// Builds rules for (1 + u² + v²)^(−`power`) times gratings. The frequencies of these
     /// gratings, in cycles per slope, add up to `frequencies` along u and along v.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
@@ -148,14 +148,14 @@ pub(crate) struct ReceiverDensity<'a> {
 }
 
 impl ReceiverDensity<'_> {
-    /// Returns the value of the integrand at the slopes (u, v).
+    /// The value of the integrand at the slopes (u, v).
     #[cfg(test)]
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
         self.integrator.lobe.value(1.0 + u * u + v * v) * gratings.product::<f64>()
     }
 
-    /// Returns the integral over a rectangle of slopes; if the bounds of an interval are in
+    /// The integral over a rectangle of slopes; if the bounds of an interval are in
     /// descending order, the integral changes sign.
     pub(crate) fn rectangle(&self, sides: Bounds) -> f64 {
         let [u, v] = sides;
@@ -175,7 +175,7 @@ impl ReceiverDensity<'_> {
         columns.sum()
     }
 
-    /// Returns the integral over u from `from` to `to` at a fixed v.
+    /// The integral over u from `from` to `to` at a fixed v.
     pub(crate) fn along_u(&self, [from, to]: [f64; 2], v: f64) -> f64 {
         if self.gratings.is_empty() {
             match self.integrator.lobe {
@@ -190,7 +190,7 @@ impl ReceiverDensity<'_> {
         along * across.map(|g| g.transmittance(0.0, v)).product::<f64>()
     }
 
-    /// Returns the number of parts into which an arc of the given length and of at most a quarter
+    /// The number of parts into which an arc of the given length and of at most a quarter
     /// turn is divided, and the Gauss rule on (−1, 1) for each part.
     pub(crate) fn arc(&self, length: f64) -> (usize, &[(f64, f64)]) {
         let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
@@ -226,7 +226,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Returns the number of nodes along each side of a rectangle of slopes.
+    /// The number of nodes along each side of a rectangle of slopes.
     fn along(&self, sides: Bounds) -> [f64; 2] {
         [0, 1].map(|axis| {
             let [low, high] = sides[axis];
@@ -235,7 +235,7 @@ impl ReceiverDensity<'_> {
         })
     }
 
-    /// Returns the nodes of an interval of slopes along an axis; the nodes' weights include the
+    /// The nodes of an interval of slopes along an axis; the nodes' weights include the
     /// gratings along this axis.
     fn nodes(&self, axis: usize, [low, high]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let [panels, nodes] = self.integrator.counts[axis].of(high - low);
@@ -253,7 +253,7 @@ impl ReceiverDensity<'_> {
     }
 }
 
-/// Returns ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md (15)).
+/// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md (15)).
 fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     let corner = |u: f64, v: f64| {
         let side = |u: f64, v: f64| {
@@ -265,7 +265,7 @@ fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     (corner(u1, v1) - corner(u0, v1)) - (corner(u1, v0) - corner(u0, v0))
 }
 
-/// Returns ∫ (1 + u² + v²)⁻² du from 0 to u.
+/// ∫ (1 + u² + v²)⁻² du from 0 to u.
 fn cosine_along_u(u: f64, v: f64) -> f64 {
     let c2 = 1.0 + v * v;
     let c = c2.sqrt();

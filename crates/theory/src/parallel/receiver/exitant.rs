@@ -39,7 +39,7 @@ pub(super) struct ExitantTable {
 }
 
 impl Receiver<'_> {
-    /// Returns the slices of the spectrum of the reflected light under a window, after the light
+    /// The slices of the spectrum of the reflected light under a window, after the light
     /// has travelled to the plane of the window.
     ///
     /// The sum over the receiver is a midpoint rule of second order, and
@@ -49,12 +49,12 @@ impl Receiver<'_> {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
 
-    /// Returns the slices with a given number of nodes along each axis.
+    /// The slices with a given number of nodes along each axis.
     pub(crate) fn slices_with(&self, nodes: usize, window: &Window, grid: &SliceGrid) -> Slices {
         self.table(window, nodes).slices(grid)
     }
 
-    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv). It is a plain sum over at least as
+    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv). It is a plain sum over at least as
     /// many nodes as slices use.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
         let highest = libm::hypot(frequency[0], frequency[1]);
@@ -62,13 +62,13 @@ impl Receiver<'_> {
         self.table(window, nodes).at(frequency)
     }
 
-    /// Returns ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹
+    /// ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹
     /// · m.
     pub(crate) fn projection(&self, window: &Window, grid: &ProjectionGrid) -> Projection {
         self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
-    /// Returns the relative L2 error of slices. The error is the difference between the slices and
+    /// The relative L2 error of slices. The error is the difference between the slices and
     /// slices from half as many nodes along each axis, divided by 2² − 1, because the error is of
     /// second order in the spacing. Returns `None` if the slices are zero.
     pub(crate) fn quadrature_error(
@@ -85,7 +85,7 @@ impl Receiver<'_> {
         error.is_finite().then_some(error)
     }
 
-    /// Returns the number of nodes along each axis that resolves the narrowest penumbra or period
+    /// The number of nodes along each axis that resolves the narrowest penumbra or period
     /// and the highest frequency. The number is even, so that the error can be estimated with half
     /// as many nodes.
     pub(crate) fn nodes(&self, window: &Window, highest: f64) -> usize {
@@ -95,7 +95,7 @@ impl Receiver<'_> {
         2 * whole((0.5 * nodes.min(most)).ceil())
     }
 
-    /// Returns the width of the receiver that is seen through a window, in metres.
+    /// The width of the receiver that is seen through a window, in metres.
     fn side(&self, window: &Window) -> f64 {
         let [x, y] = axes(window, self.after).map(|axis| 2.0 * axis.reach());
         x.max(y)
@@ -120,7 +120,7 @@ impl Receiver<'_> {
         })
     }
 
-    /// Returns the smallest width of the light.
+    /// The smallest width of the light.
     fn width(&self) -> f64 {
         match self.light.shape {
             Some(Shape::Rectangle(r)) => r.size[0].min(r.size[1]),
@@ -129,7 +129,7 @@ impl Receiver<'_> {
         }
     }
 
-    /// Returns the shortest length over which the irradiance changes: the narrowest penumbra, or
+    /// The shortest length over which the irradiance changes: the narrowest penumbra, or
     /// the shortest period of a grating's shadow.
     fn finest(&self) -> f64 {
         let width = self.width();
@@ -143,7 +143,7 @@ impl Receiver<'_> {
         lengths.fold(self.distance, f64::min)
     }
 
-    /// Returns the radiance at `nodes` × `nodes` nodes over the part of the receiver that is seen
+    /// The radiance at `nodes` × `nodes` nodes over the part of the receiver that is seen
     /// through a window.
     pub(super) fn table(&self, window: &Window, nodes: usize) -> ExitantTable {
         let axes = axes(window, self.after);
@@ -192,7 +192,7 @@ impl ExitantTable {
         })
     }
 
-    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv), as a plain sum over nodes.
+    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv), as a plain sum over nodes.
     pub(super) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
         let kernel = |k: usize, frequency| {
             let (axis, coordinates) = (&self.axes[k], &self.coordinates[k]);
@@ -203,7 +203,7 @@ impl ExitantTable {
         values.map(|((i, j), e)| along_x[i] * along_y[j] * e).sum()
     }
 
-    /// Returns a row of the spectrum if light does not travel after the reflection: radiance does
+    /// A row of the spectrum if light does not travel after the reflection: radiance does
     /// not depend on the slope, so the spectrum is a product.
     fn at_receiver(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let wave = |k: usize| -> Vec<Complex> {
@@ -227,7 +227,7 @@ impl ExitantTable {
             .collect()
     }
 
-    /// Returns a row of the spectrum after travel, as the sum Σ K(x') E(x', y') K(y') over nodes.
+    /// A row of the spectrum after travel, as the sum Σ K(x') E(x', y') K(y') over nodes.
     fn travelled(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let kernels = |k: usize| self.axes[k].along(&self.coordinates[k], &frequencies[k]);
         let [x, y]: [Kernels; 2] = [kernels(0), kernels(1)];
@@ -270,7 +270,7 @@ impl ExitantTable {
         }
     }
 
-    /// Returns the windowed radiance integrated over y and v, for each x' of the nodes.
+    /// The windowed radiance integrated over y and v, for each x' of the nodes.
     fn across(&self) -> Vec<f64> {
         let axis = &self.axes[1];
         let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();

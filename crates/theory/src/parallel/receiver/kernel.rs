@@ -24,13 +24,13 @@ pub(crate) struct Kernels {
 }
 
 impl KernelAxis {
-    /// Returns the largest absolute coordinate among the points of the receiver that are seen
+    /// The largest absolute coordinate among the points of the receiver that are seen
     /// through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
     }
 
-    /// Returns K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and
+    /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and
     /// one frequency (docs/theory.md (19)).
     pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
         let rule = self.rule([omega, nu]);
@@ -39,7 +39,7 @@ impl KernelAxis {
         coordinates.iter().map(kernel).collect()
     }
 
-    /// Returns K at some coordinates for all slope frequencies ν of a row.
+    /// K at some coordinates for all slope frequencies ν of a row.
     pub(crate) fn along(&self, coordinates: &[f64], row: &FrequencyRow) -> Kernels {
         let rule = self.rule([row.position, row.step * row.half as f64]);
         let mut re = Array2::zeros((row.count(), coordinates.len()));
@@ -63,7 +63,7 @@ impl KernelAxis {
         sum
     }
 
-    /// Returns the range of slopes for which light from the coordinate t of the receiver is inside
+    /// The range of slopes for which light from the coordinate t of the receiver is inside
     /// the window; the range is empty if no light from this coordinate is inside.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
@@ -75,7 +75,7 @@ impl KernelAxis {
         [low, high.min(k).max(low)]
     }
 
-    /// Returns rays from coordinate t of the receiver through the window, one for each node of the
+    /// Rays from coordinate t of the receiver through the window, one for each node of the
     /// rule. Each ray is returned as weight, position and slope.
     fn rays(&self, t: f64, rule: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
         let [low, high] = self.slopes(t);
@@ -88,12 +88,12 @@ impl KernelAxis {
         })
     }
 
-    /// Returns a Gauss rule on (−1, 1) with enough nodes for a frequency.
+    /// A Gauss rule on (−1, 1) with enough nodes for a frequency.
     fn rule(&self, frequency: [f64; 2]) -> Vec<(f64, f64)> {
         gauss_legendre(whole(self.nodes(frequency)))
     }
 
-    /// Returns the number of nodes of the rule for a frequency. It is the number that the
+    /// The number of nodes of the rule for a frequency. It is the number that the
     /// oscillations of the integrand require, plus a constant for an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
@@ -101,7 +101,7 @@ impl KernelAxis {
         (16.0 + 1.7 * waves).ceil()
     }
 
-    /// Returns the highest frequency along u of the product of the exponential and the window.
+    /// The highest frequency along u of the product of the exponential and the window.
     fn fastest(&self, [omega, nu]: [f64; 2]) -> f64 {
         let fastest = |profile: &Profile| {
             let terms = profile.cosine_terms();

@@ -82,7 +82,7 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point, and
+    /// The mean irradiance over a rectangle of the receiver if the light is a point, and
     /// the irradiance at the rectangle's centre for other lights, in the frame of the arriving
     /// light, W m⁻². Shadows of a point light have sharp edges, so a value at the centre of a cell
     /// would not represent the cell.
@@ -98,7 +98,7 @@ impl<'a> Receiver<'a> {
         received / Rectangle { center, size }.area()
     }
 
-    /// Returns the slopes of the light that arrives in a cell, without barriers: at its centre, or,
+    /// The slopes of the light that arrives in a cell, without barriers: at its centre, or,
     /// if the light is a point, in the whole cell.
     fn lit(&self, center: [f64; 2], size: [f64; 2]) -> (SlopeProjection, ReceiverRegion) {
         if let Some(shape) = &self.light.shape {
@@ -112,7 +112,7 @@ impl<'a> Receiver<'a> {
         (bundle, ReceiverRegion::rectangle(sides))
     }
 
-    /// Returns the integral over those slopes of a region for which no blocker stops the light.
+    /// The integral over those slopes of a region for which no blocker stops the light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
@@ -122,7 +122,7 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// Returns the light of a region of slopes that passes several barriers: the light without
+    /// The light of a region of slopes that passes several barriers: the light without
     /// barriers, minus the light that each blocking shape stops.
     fn passed(
         &self,
@@ -148,7 +148,7 @@ impl<'a> Receiver<'a> {
         self.passed(bundle, open, rest, density) - stopped
     }
 
-    /// Returns the integrand over slopes that includes the gratings among the given barriers.
+    /// The integrand over slopes that includes the gratings among the given barriers.
     fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> ReceiverDensity<'_> {
         let gratings = barriers
             .iter()
@@ -159,7 +159,7 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the radiance that leaves the receiver, albedo / π · E, which is the same in all
+    /// The radiance that leaves the receiver, albedo / π · E, which is the same in all
     /// directions. (In the paper's Eq. 6, ρ is the BRDF, albedo / π.)
     fn exitance(&self) -> f64 {
         self.albedo / PI
@@ -167,7 +167,7 @@ impl<'a> Receiver<'a> {
 }
 
 impl<'a> ChainSegment<'a> {
-    /// Returns the diffuse surface at the end of the path, if there is one, with the light and
+    /// The diffuse surface at the end of the path, if there is one, with the light and
     /// masks before it.
     ///
     /// # Panics

@@ -19,7 +19,7 @@ pub(crate) struct ReceiverRegion {
 }
 
 impl ReceiverRegion {
-    /// Returns the region that consists of a rectangle.
+    /// The region that consists of a rectangle.
     pub(crate) fn rectangle(sides: Bounds) -> Self {
         Self {
             sides,
@@ -27,7 +27,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns the region that consists of a rectangle or a disc.
+    /// The region that consists of a rectangle or a disc.
     pub(crate) fn shape(shape: &Shape) -> Self {
         match *shape {
             Shape::Rectangle(r) => Self::rectangle([r.extent(0), r.extent(1)]),
@@ -38,7 +38,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns a rectangle that contains the region: the intersection of the rectangle and the
+    /// A rectangle that contains the region: the intersection of the rectangle and the
     /// bounding boxes of the discs.
     pub(crate) fn bounds(&self) -> Bounds {
         let discs = self.discs.iter().map(|disc| {
@@ -48,7 +48,7 @@ impl ReceiverRegion {
         discs.fold(self.sides, common)
     }
 
-    /// Returns the intersection of the region with a rectangle, or `None` if this intersection is
+    /// The intersection of the region with a rectangle, or `None` if this intersection is
     /// empty.
     pub(crate) fn within(&self, sides: Bounds) -> Option<Self> {
         let region = Self {
@@ -58,7 +58,7 @@ impl ReceiverRegion {
         region.simplified()
     }
 
-    /// Returns the intersection of the region with a shape, or `None` if this intersection is
+    /// The intersection of the region with a shape, or `None` if this intersection is
     /// empty.
     pub(crate) fn cut(&self, shape: &Shape) -> Option<Self> {
         match *shape {
@@ -71,7 +71,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns the part of the region that the half-planes of a barrier, or the screen around its
+    /// The part of the region that the half-planes of a barrier, or the screen around its
     /// hole, leave open. Returns `None` if this part is empty.
     pub(super) fn open(&self, bundle: &SlopeProjection, barrier: &Barrier<'_>) -> Option<Self> {
         let before = barrier.distance;
@@ -107,7 +107,7 @@ impl ReceiverRegion {
         Some(self)
     }
 
-    /// Returns the integral of a density over the region.
+    /// The integral of a density over the region.
     ///
     /// By Green's theorem the integral over the region is ∮ A dv along its boundary, where A(u, v)
     /// = ∫ density du. The boundary consists of arcs of circles, on which the integrand is smooth,
@@ -138,7 +138,7 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// Returns ∫ A dv upward along the line of constant u. The integral is over the part of this
+    /// ∫ A dv upward along the line of constant u. The integral is over the part of this
     /// line that is inside all discs and between the rectangle's lower and upper sides.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
@@ -161,7 +161,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns ∫ A dv along the arcs of circle `i` that bound the region.
+    /// ∫ A dv along the arcs of circle `i` that bound the region.
     fn arcs(&self, i: usize, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let disc = self.discs[i];
         let ends = self.crossings(i);
@@ -177,7 +177,7 @@ impl ReceiverRegion {
         inside.map(|arc| along(&disc, arc, from, density)).sum()
     }
 
-    /// Returns the angles, in ascending order, at which circle `i` may enter or leave the
+    /// The angles, in ascending order, at which circle `i` may enter or leave the
     /// intersection of the rectangle and the other discs. Returns at least one angle.
     fn crossings(&self, i: usize) -> Vec<f64> {
         let disc = &self.discs[i];
@@ -206,7 +206,7 @@ impl ReceiverRegion {
     }
 }
 
-/// Returns ∫ A dv along an arc of a circle, for the antiderivative A that is zero at u = `from`.
+/// ∫ A dv along an arc of a circle, for the antiderivative A that is zero at u = `from`.
 fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensity<'_>) -> f64 {
     let quarters = whole(((end - start) / FRAC_PI_2).ceil().max(1.0));
     let (panels, rule) = density.arc(disc.radius * (end - start) / quarters as f64);
@@ -225,7 +225,7 @@ fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensi
         .sum()
 }
 
-/// Returns the point of a disc's boundary at an angle.
+/// The point of a disc's boundary at an angle.
 fn on(disc: &Disc, angle: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle);
     [
@@ -242,7 +242,7 @@ fn common(a: Bounds, b: Bounds) -> Bounds {
     [0, 1].map(|k| [a[k][0].max(b[k][0]), a[k][1].min(b[k][1])])
 }
 
-/// Returns the distances of a point from the nearest and the farthest point of a rectangle.
+/// The distances of a point from the nearest and the farthest point of a rectangle.
 fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
     let along = [0, 1].map(|k| {
         let [below, above] = [sides[k][0] - point[k], point[k] - sides[k][1]];

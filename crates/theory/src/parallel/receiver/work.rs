@@ -56,7 +56,7 @@ impl Receiver<'_> {
             .then(picture)
     }
 
-    /// Returns the mean number of computing steps for the irradiance in a cell, over [`SOME`] ×
+    /// The mean number of computing steps for the irradiance in a cell, over [`SOME`] ×
     /// [`SOME`] points.
     fn mean_steps(&self, axes: &[KernelAxis; 2], nodes: usize) -> f64 {
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);

@@ -22,7 +22,7 @@ impl<'a> Back<'a> {
         }
     }
 
-    /// Returns the ray (x, y, u, v) at the light's plane that arrives at the coordinates z of the
+    /// The ray (x, y, u, v) at the light's plane that arrives at the coordinates z of the
     /// recording plane, and |∂z/∂ray|. Returns `None` if there is no such ray.
     ///
     /// Reflection and refraction of a ray conserve n² dx dy du dv / (1 + u² + v²)² (docs/theory.md
@@ -57,7 +57,7 @@ impl<'a> Back<'a> {
         Some(([at.x, at.y, u, v], spread / width))
     }
 
-    /// Returns the backward ray that leaves the last surface, for the ray `last` of the last leg.
+    /// The backward ray that leaves the last surface, for the ray `last` of the last leg.
     /// The line of `last` starts beyond all its possible intersections with the last surface. This
     /// is necessary because a plane at an oblique surface may lie partly behind the surface. If the
     /// plane is on the last surface, the point where the ray leaves this surface is already known.
@@ -76,7 +76,7 @@ impl<'a> Back<'a> {
 }
 
 impl PathSurface {
-    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² increases when a ray is followed
+    /// The factor by which dx dy du dv / (1 + u² + v²)² increases when a ray is followed
     /// backward through the surface. `before` is the ray on the light's side, and `after` is the
     /// direction on the plane's side.
     fn spread(&self, before: &LegRay, after: DVec3) -> Option<f64> {

@@ -24,7 +24,7 @@ pub(crate) struct Incidence {
 }
 
 impl Incidence {
-    /// Returns the incidence for the frame of the arriving leg; `normal` may be on either side of
+    /// The incidence for the frame of the arriving leg; `normal` may be on either side of
     /// the surface.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
@@ -49,7 +49,7 @@ impl Incidence {
         }
     }
 
-    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T, B),
+    /// The shape operator of a patch at a point: the derivative of the normal along (T, B),
     /// per metre. The operator is positive for a surface that is convex on the side of N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
@@ -73,7 +73,7 @@ pub(crate) struct CentralHit {
 }
 
 impl PathSystem {
-    /// Returns the hits of the central ray. Returns `None` if the ray misses an element or does
+    /// The hits of the central ray. Returns `None` if the ray misses an element or does
     /// not continue from it.
     pub(crate) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
@@ -99,7 +99,7 @@ impl PathSystem {
 }
 
 impl PathSurface {
-    /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); at other
+    /// The frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); at other
     /// elements the frame is turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if self.event() != Some(Specular::Mirror) {
@@ -115,7 +115,7 @@ impl PathSurface {
         }
     }
 
-    /// Returns the refractive indices before and after a refraction, for light along the D of the
+    /// The refractive indices before and after a refraction, for light along the D of the
     /// incidence's frame.
     pub(super) fn media(&self, incidence: &Incidence) -> Option<Media> {
         let Some(Specular::Refraction { front, back }) = self.event() else {

@@ -64,6 +64,7 @@ pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
     for (i, (element, hit)) in elements.iter().zip(&hits).enumerate() {
         walk.travel(hit.distance - travelled, &element.name);
         travelled = 0.0;
+        // A plane on the last surface has its coordinates, so light does not travel on.
         let ends_here = on_last && i + 1 == hits.len();
         let across = walk.clone().after(element, hit)?;
         foci = across.foci();
@@ -341,7 +342,7 @@ impl Walk {
         }
     }
 
-    /// Returns the distances d at which det(P + d Q) = 0. Here x = P x₀ and u = Q x₀ are the
+    /// The distances d at which det(P + d Q) = 0. Here x = P x₀ and u = Q x₀ are the
     /// positions and slopes of rays that leave the light parallel to each other, at the positions
     /// x₀.
     fn foci(&self) -> Vec<f64> {
@@ -366,7 +367,7 @@ impl Walk {
     }
 }
 
-/// Returns the map of a thin lens, from the frame of one leg to the frame of the next leg. The map
+/// The map of a thin lens, from the frame of one leg to the frame of the next leg. The map
 /// holds to first order about a central ray, which may cross the lens at any point and slope.
 ///
 /// In the lens's own frame positions do not change, and slopes decrease by the position divided by
@@ -379,7 +380,7 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
     Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
-/// Returns the derivative of a ray's coordinates in a plane with respect to the ray's coordinates
+/// The derivative of a ray's coordinates in a plane with respect to the ray's coordinates
 /// in the frame of a leg. Coordinates are positions and slopes, and the leg meets the plane
 /// obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
@@ -399,7 +400,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     matrix
 }
 
-/// Returns the map from positions and angles in the plane (X, Y) of a frame to positions and
+/// The map from positions and angles in the plane (X, Y) of a frame to positions and
 /// angles at a plane on a surface. The plane may be tilted or displaced relative to the frame;
 /// `theta` is the longitude of the central ray.
 fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {

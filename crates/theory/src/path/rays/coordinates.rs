@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
-    /// Returns the coordinates at the plane of a ray that leaves a point along a unit vector.
+    /// The coordinates at the plane of a ray that leaves a point along a unit vector.
     /// Returns `None` if the ray misses.
     #[must_use]
     pub fn arrival(&self, point: DVec3, direction: DVec3) -> Option<[f64; 4]> {
@@ -16,7 +16,7 @@ impl Plane {
         Some(coordinates)
     }
 
-    /// Returns the coordinates at the plane of a ray on its last leg, and the factor that converts
+    /// The coordinates at the plane of a ray on its last leg, and the factor that converts
     /// the ray's flux to the recorded quantity in ray space. Returns `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
@@ -33,7 +33,7 @@ impl Plane {
         }
     }
 
-    /// Returns the distance along a ray of the last leg to the plane, or to the plane's surface if
+    /// The distance along a ray of the last leg to the plane, or to the plane's surface if
     /// it has one. The distance is zero for a plane on a surface that light leaves. Returns `None`
     /// if the ray misses the plane or its surface, or if the plane lies on the next surface and the
     /// ray's start lies behind it.
@@ -54,7 +54,7 @@ impl Plane {
         (t.is_finite() && !is_behind).then_some(t * share)
     }
 
-    /// Returns the ray that has the given coordinates on the plane or on the plane's surface, in
+    /// The ray that has the given coordinates on the plane or on the plane's surface, in
     /// the direction of light. Also returns the étendue per dx dy du dv at this ray. This is the
     /// inverse of [`Self::coordinates`]. Returns `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
@@ -80,7 +80,7 @@ impl Plane {
         Some((LegRay { point, direction }, etendue))
     }
 
-    /// Returns the point with two given coordinates on the plane or on the plane's surface, and
+    /// The point with two given coordinates on the plane or on the plane's surface, and
     /// the normal at this point on the side of D. Returns `None` if the surface has no point with
     /// these coordinates.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
@@ -91,7 +91,7 @@ impl Plane {
         }
     }
 
-    /// Returns the direction, relative to the normal, that has two given angles at a plane on a
+    /// The direction, relative to the normal, that has two given angles at a plane on a
     /// surface. Returns `None` if an angle exceeds a right angle, because the same direction would
     /// then have two pairs of angles.
     pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
@@ -106,7 +106,7 @@ impl Plane {
         is_in_front.then(|| DVec3::new(across * sin, up, across * cos))
     }
 
-    /// Returns the point of a patch above a point of the tangent plane, and its normal on the side
+    /// The point of a patch above a point of the tangent plane, and its normal on the side
     /// of D.
     fn above(&self, foot: DVec3, patch: &Patch) -> Option<(DVec3, DVec3)> {
         let d = self.frame.d;
@@ -116,7 +116,7 @@ impl Plane {
         Some((down.point - distance * d, normal * side))
     }
 
-    /// Returns the factor that converts radiance to the plane's recorded quantity, for a ray in
+    /// The factor that converts radiance to the plane's recorded quantity, for a ray in
     /// the plane's coordinates.
     pub(crate) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
         match (self.orientation, self.quantity) {
@@ -137,7 +137,7 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Returns the point where a ray leaves the surface that it met last, or where the ray meets
+    /// The point where a ray leaves the surface that it met last, or where the ray meets
     /// the plane's surface. Also returns the unit normal at this point, on the side of the plane's
     /// D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
@@ -158,12 +158,12 @@ impl Plane {
         Some((point, normal * side))
     }
 
-    /// Returns the point where a ray meets the surface of the plane from the side of the plane's D.
+    /// The point where a ray meets the surface of the plane from the side of the plane's D.
     fn arrives_on(&self, patch: &Patch, ray: &LegRay) -> Option<(f64, DVec3)> {
         ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
-    /// Returns a direction's two angles relative to the D of `local`, or `None` if the direction
+    /// A direction's two angles relative to the D of `local`, or `None` if the direction
     /// points into the surface.
     fn on_surface(
         &self,
@@ -188,7 +188,7 @@ impl Plane {
 }
 
 impl LegRay {
-    /// Returns the ray's position and slopes in the plane (X, Y) of a frame, or `None` if the
+    /// The ray's position and slopes in the plane (X, Y) of a frame, or `None` if the
     /// ray's direction has no positive component along D.
     pub(super) fn across(&self, frame: &Frame) -> Option<[f64; 4]> {
         let (x, y) = crossing(frame, self)?;
@@ -198,7 +198,7 @@ impl LegRay {
     }
 }
 
-/// Returns the coordinates of the point where a ray, extended to a line, crosses the plane (X, Y)
+/// The coordinates of the point where a ray, extended to a line, crosses the plane (X, Y)
 /// of a frame.
 fn crossing(frame: &Frame, ray: &LegRay) -> Option<(f64, f64)> {
     let (at, towards) = (

@@ -4,7 +4,7 @@ use crate::geometry::SpectrumMap;
 use crate::path::Observed;
 use etendue_field::Window;
 
-/// Returns the error of a chain of affine maps in the limit of a small neighbourhood of the central
+/// The error of a chain of affine maps in the limit of a small neighbourhood of the central
 /// ray. [`chain`](super::chain()) returns such a chain.
 ///
 /// The maps of a chain must be the derivatives of rays through the real geometry. If the maps are
@@ -23,7 +23,7 @@ pub fn defect(view: &Observed, map: &SpectrumMap<4>, window: &Window) -> Option<
     Some(off.max(radiance_defect(view, map)?.abs()))
 }
 
-/// Returns the contribution of the chain's factor to [`defect`]. It is the radiance that the chain
+/// The contribution of the chain's factor to [`defect`]. It is the radiance that the chain
 /// predicts for the central ray, divided by the actual radiance, minus 1.
 #[must_use]
 pub fn radiance_defect(view: &Observed, map: &SpectrumMap<4>) -> Option<f64> {

@@ -95,7 +95,7 @@ enum By<'a> {
 }
 
 impl<'a> Outer<'a> {
-    /// Returns the density of directions towards an environment, or `None` if no part of the
+    /// The density of directions towards an environment, or `None` if no part of the
     /// environment emits light.
     fn new(system: &'a PathSystem, plane: Option<&Plane>) -> Option<Self> {
         Some(match &system.light {
@@ -109,7 +109,7 @@ impl<'a> Outer<'a> {
         })
     }
 
-    /// Returns the two outer coordinates of a ray and their density, or `None` if the ray does not
+    /// The two outer coordinates of a ray and their density, or `None` if the ray does not
     /// leave the light's plane towards positive z.
     fn draw(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
         match self {
@@ -128,7 +128,7 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// Returns the sampler of a strategy, or `None` if `jacobian` does not determine the ray for a
+    /// The sampler of a strategy, or `None` if `jacobian` does not determine the ray for a
     /// target. `center` is the point where the central ray lands, and `jacobian` is the derivative
     /// of the landing point with respect to the ray. If no plane is given, all rays are assumed to
     /// land at their targets.
@@ -174,6 +174,7 @@ impl<'a> RaySampler<'a> {
             },
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
+                // Rays from one point have two coordinates, which cannot fill the plane's four.
                 if matches!(outer, Outer::Center) {
                     return None;
                 }
@@ -208,7 +209,7 @@ impl<'a> RaySampler<'a> {
         })
     }
 
-    /// Returns a ray and its sampling density in the emission's coordinates, or `None` if the
+    /// A ray and its sampling density in the emission's coordinates, or `None` if the
     /// light does not emit the ray.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64)> {
         let [a, b, c, d, ..] = *at;

@@ -22,7 +22,7 @@ pub(super) struct EmissionMeasure {
 const STEEPEST: f64 = 30.0;
 
 impl EmissionMeasure {
-    /// Returns the indices, among x, y, u and v, of the two coordinates that are not inner
+    /// The indices, among x, y, u and v, of the two coordinates that are not inner
     /// coordinates.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
@@ -58,7 +58,7 @@ impl PathSystem {
         }
     }
 
-    /// Returns the densities of the two inner coordinates in proportion to the light's picture, or
+    /// The densities of the two inner coordinates in proportion to the light's picture, or
     /// `None` if the light has no picture.
     pub(super) fn picture_densities(&self) -> Option<[LinearDensity; 2]> {
         let image = self.light.image()?;
@@ -78,7 +78,7 @@ impl PathSystem {
     }
 }
 
-/// Returns the flux, per unit of the emission's coordinates, of the ray (x, y, u, v) that leaves a
+/// The flux, per unit of the emission's coordinates, of the ray (x, y, u, v) that leaves a
 /// light:
 ///
 /// | light | flux |

@@ -21,7 +21,7 @@ const NO_PICTURES: RayBudget = RayBudget::new(0.0, f64::INFINITY);
 /// by a quadrature rule.
 const FOR_PICTURES: f64 = 1e6;
 
-/// Returns the prediction from rays followed through the exact geometry, and its derivatives with
+/// The prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.
 ///
 /// For a projector, point or beam, this function uses a midpoint rule if no sharp edge cuts the
@@ -74,7 +74,7 @@ pub(crate) fn with_rays(
     }
 }
 
-/// Returns the best sampler of a view's rays, or `None` if no ray arrives.
+/// The best sampler of a view's rays, or `None` if no ray arrives.
 fn sampler<'a>(
     view: &'a Observed,
     field: &impl RayField,
@@ -127,7 +127,7 @@ pub fn sampled(
     (0..most).filter_map(|_| ray(net.point())).collect()
 }
 
-/// Returns the prediction of a first-order chain over the same rays. [`chain`](super::chain())
+/// The prediction of a first-order chain over the same rays. [`chain`](super::chain())
 /// returns such a chain.
 ///
 /// The map moves the radiance of ray z at the light to A z + t, where A is the transpose of the
@@ -188,7 +188,7 @@ impl DrawnField for ExactRays<'_> {
     }
 }
 
-/// Returns a ray whose weight is multiplied by the window.
+/// A ray whose weight is multiplied by the window.
 fn windowed(window: &Window, z: [f64; 4], weight: f64) -> Option<RayNode> {
     let [x, y, u, v] = z;
     let weight = weight * window.value(&TwoPlane { x, y, u, v });
@@ -199,7 +199,7 @@ fn exact_field<'a>(view: &'a Observed, path: &'a PreparedPath<'a>) -> impl RayFi
     move |ray| exact(&view.plane, path, ray, &mut path.at_mask())
 }
 
-/// Returns a ray's coordinates at a plane and its contribution, as a [`RayField`].
+/// A ray's coordinates at a plane and its contribution, as a [`RayField`].
 fn exact(
     plane: &Plane,
     path: &PreparedPath<'_>,
@@ -280,7 +280,7 @@ struct AffineLeg {
 }
 
 impl AffineLeg {
-    /// Returns the legs on which light may be stopped, or no legs if there are neither masks nor
+    /// The legs on which light may be stopped, or no legs if there are neither masks nor
     /// obstacles.
     fn all(view: &Observed) -> Vec<Self> {
         let Observed { system, plane } = view;
@@ -311,7 +311,7 @@ impl AffineLeg {
         starts.enumerate().filter_map(leg).collect()
     }
 
-    /// Returns the fraction of a ray's light that passes masks and obstacles on this leg; `number`
+    /// The fraction of a ray's light that passes masks and obstacles on this leg; `number`
     /// is the index of the leg.
     fn passes(&self, path: &PreparedPath<'_>, number: usize, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = self.map.apply(ray);
@@ -381,7 +381,7 @@ fn summed(
     }
 }
 
-/// Returns the sampling strategy that has the smallest error in a trial.
+/// The sampling strategy that has the smallest error in a trial.
 fn best(
     field: &impl RayField,
     observed: (&PathSystem, Option<&Plane>),

@@ -33,7 +33,7 @@ const TARGET_ERROR: f64 = 1e-7;
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖. The error is the sum of two parts: the change of two
+    /// The slices and ‖error‖/‖F‖. The error is the sum of two parts: the change of two
     /// slices at right angles by the last refinement, and a bound on the error that edges cause.
     /// The rule is refined until its error is below 10⁻⁷ or the next rule would take more than
     /// `max_steps`. Returns `None` if the error stays above 10⁻⁴.
@@ -67,7 +67,7 @@ impl<F: RayField> Finder<'_, F> {
         }
     }
 
-    /// Returns all rays of the rule that land in the window, in an order that does not depend on
+    /// All rays of the rule that land in the window, in an order that does not depend on
     /// the number of threads.
     pub(super) fn nodes(&self, count: usize) -> Vec<RayNode> {
         let Some([a, b]) = self.region() else {
@@ -83,7 +83,7 @@ impl<F: RayField> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Returns the number of nodes along each coordinate that should suffice. It exceeds the number
+    /// The number of nodes along each coordinate that should suffice. It exceeds the number
     /// of cycles, because a midpoint rule is exact for functions with fewer cycles than nodes.
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];

@@ -43,7 +43,7 @@ pub(super) struct Finder<'a, F> {
 /// coordinates at the light.
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
-/// Returns the neighbourhood from exact rays without masks, or `None` if the central ray or one of
+/// The neighbourhood from exact rays without masks, or `None` if the central ray or one of
 /// its neighbours does not arrive.
 pub(super) fn neighbourhood(system: &PathSystem, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
@@ -64,7 +64,7 @@ pub(super) fn neighbourhood(system: &PathSystem, plane: &Plane) -> Option<Neighb
 }
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the ray at coordinates (a, b) of the emission.
+    /// The ray at coordinates (a, b) of the emission.
     pub(super) fn ray(&self, inner: [f64; 2]) -> [f64; 4] {
         let mut ray = [0.0; 4];
         ray[self.emission.inner[0]] = inner[0];
@@ -72,7 +72,7 @@ impl<F: RayField> Finder<'_, F> {
         ray
     }
 
-    /// Returns a ray at the plane. Its weight includes the window and `share`, the area of
+    /// A ray at the plane. Its weight includes the window and `share`, the area of
     /// emission coordinates that the ray represents.
     pub(super) fn node(&self, ray: [f64; 4], share: f64) -> RayNode {
         let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
@@ -81,7 +81,7 @@ impl<F: RayField> Finder<'_, F> {
         RayNode { z, weight }
     }
 
-    /// Returns the region of rays that land in the window. The search starts from the bounding box
+    /// The region of rays that land in the window. The search starts from the bounding box
     /// of the parallelogram that the linear map takes into the window. The search then moves,
     /// widens and narrows the box until the box contains all arriving light. Returns `None` if
     /// nothing arrives.
@@ -97,6 +97,7 @@ impl<F: RayField> Finder<'_, F> {
                 region = grown;
                 continue;
             };
+            // Where light touches the border of the region, there may be light beyond it.
             let touches = |axis: usize| {
                 let [low, high] = lit[axis];
                 let [least, most] = region[axis];
@@ -123,13 +124,13 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
-    /// Returns the absolute value of a ray's contribution to the windowed ray space. The ray is
+    /// The absolute value of a ray's contribution to the windowed ray space. The ray is
     /// given by inner coordinates of the emission.
     fn strength(&self, inner: [f64; 2]) -> f64 {
         self.node(self.ray(inner), 1.0).weight.abs()
     }
 
-    /// Returns the strength of light next to edges that cut the light, divided by the strength of
+    /// The strength of light next to edges that cut the light, divided by the strength of
     /// all light in a row of cells. This ratio, divided by the number of nodes along a coordinate,
     /// bounds the error of a rule.
     pub(super) fn edges(&self) -> f64 {
@@ -153,7 +154,7 @@ impl<F: RayField> Finder<'_, F> {
         next_to_edges / strengths.iter().sum::<f64>() * CELLS as f64
     }
 
-    /// Returns the strength of light at the lit side of the edge between a lit point and a dark
+    /// The strength of light at the lit side of the edge between a lit point and a dark
     /// point.
     fn last_lit(&self, mut lit: [f64; 2], mut unlit: [f64; 2], dark: f64) -> f64 {
         for _ in 0..HALVINGS {
@@ -167,7 +168,7 @@ impl<F: RayField> Finder<'_, F> {
         self.strength(lit)
     }
 
-    /// Returns the indices of the first and the last lit cell of a region along each axis.
+    /// The indices of the first and the last lit cell of a region along each axis.
     fn lit(&self, region: &Region) -> Option<[[usize; 2]; 2]> {
         let strengths: Vec<f64> = cells()
             .map(|cell| self.strength(middle(region, cell)))
@@ -183,7 +184,7 @@ impl<F: RayField> Finder<'_, F> {
         found
     }
 
-    /// Returns the bounding box of the rays that the linear map takes into a slightly wider window.
+    /// The bounding box of the rays that the linear map takes into a slightly wider window.
     fn linear_region(&self) -> Option<Region> {
         let [a, b] = self.emission.reach;
         let mut corners = vec![[-a, -b], [a, -b], [a, b], [-a, b]];
@@ -212,7 +213,7 @@ fn cells() -> impl Iterator<Item = (usize, usize)> {
     (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS))
 }
 
-/// Returns the centre of the cell (i, j) of a region.
+/// The centre of the cell (i, j) of a region.
 fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     let at = |axis: usize, i: usize| {
         let [low, high] = region[axis];
@@ -221,7 +222,7 @@ fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     [at(0, i), at(1, j)]
 }
 
-/// Returns the part of a convex polygon where n·p ≤ c.
+/// The part of a convex polygon where n·p ≤ c.
 fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     let height = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - c;
     let mut kept = Vec::new();
@@ -239,7 +240,7 @@ fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// Returns a region whose sides are moved outward by the given fractions of its width, but not
+/// A region whose sides are moved outward by the given fractions of its width, but not
 /// beyond `reach`.
 fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     std::array::from_fn(|axis| {
@@ -252,7 +253,7 @@ fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     })
 }
 
-/// Returns the region that contains the lit cells and a margin of one cell on each side.
+/// The region that contains the lit cells and a margin of one cell on each side.
 fn narrowed(region: &Region, lit: &[[usize; 2]; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];

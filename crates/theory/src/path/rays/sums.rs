@@ -23,7 +23,7 @@ const POWERS: usize = 32;
 /// power n multiplied by e^(i `LANES` angle).
 const LANES: usize = 8;
 
-/// Returns the sums at all frequencies of all slices. The sums are bitwise identical on any number
+/// The sums at all frequencies of all slices. The sums are bitwise identical on any number
 /// of threads, and their rounding error is below 10⁻¹² of Σ |w|.
 pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);

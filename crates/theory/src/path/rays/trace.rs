@@ -5,7 +5,7 @@ use crate::path::{AtMask, PathSystem, PreparedPath};
 use etendue_field::{Frame, Specular};
 use glam::DVec3;
 
-/// Returns the direction of light after an event on a patch with the given frame, if light along
+/// The direction of light after an event on a patch with the given frame, if light along
 /// `direction` hits `point`; `normal` is on the side of the patch's D.
 pub(crate) fn bent(
     event: Specular,
@@ -40,7 +40,7 @@ pub(crate) fn bent(
 }
 
 impl PreparedPath<'_> {
-    /// Returns the last leg of a ray from the light, and the fraction of the ray's light that
+    /// The last leg of a ray from the light, and the fraction of the ray's light that
     /// passes on the legs before the last. A ray that is stopped is followed all the same.
     pub(super) fn follow(&self, emission: [f64; 4], at_mask: AtMask<'_>) -> Option<(LegRay, f64)> {
         let mut ray = LegRay::new(emission);
@@ -55,7 +55,7 @@ impl PreparedPath<'_> {
 }
 
 impl PathSystem {
-    /// Returns the last leg of the ray that starts with (x, y, u, v) at the light's plane, without
+    /// The last leg of the ray that starts with (x, y, u, v) at the light's plane, without
     /// masks or obstacles.
     pub(super) fn follow(&self, emission: [f64; 4]) -> Option<LegRay> {
         let mut surfaces = self.before_plane().iter();

@@ -49,7 +49,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns positions on a patch. `frame` has the axes at the central ray's hit.
+    /// Positions on a patch. `frame` has the axes at the central ray's hit.
     fn on_patch(patch: Patch, frame: &Frame) -> Self {
         let local = patch.frame.to_local(frame.origin);
         let [t, b] = [frame.x, frame.y].map(|v| patch.frame.vector_to_local(v));
@@ -60,7 +60,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns positions on the plane or on its surface, for the leg from the last scatterer.
+    /// Positions on the plane or on its surface, for the leg from the last scatterer.
     /// Returns `None` if the leg does not run straight to the plane, or if the plane cuts the
     /// surface at which the leg begins.
     pub(super) fn at_plane(view: &Observed, scatterers: &[ScatteringSurface]) -> Option<Self> {
@@ -113,7 +113,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns the coordinates of the point where a ray ends the leg, if there is such a point.
+    /// The coordinates of the point where a ray ends the leg, if there is such a point.
     pub(super) fn end(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let (frame, t) = match self {
             Self::Angles => return None,
@@ -130,7 +130,7 @@ impl DirectionCoordinates {
         (t > 0.0 && t.is_finite()).then_some([at.x, at.y])
     }
 
-    /// Returns the point of the next surface with these coordinates.
+    /// The point of the next surface with these coordinates.
     pub(super) fn target(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Patch { patch, .. } => Some(patch.point(a, b)),
@@ -138,7 +138,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Returns the direction from a point that has these coordinates, and the solid angle in
+    /// The direction from a point that has these coordinates, and the solid angle in
     /// steradians per unit of the coordinates. `local` contains the normal about which angles are
     /// measured and the axes of the scatterer.
     pub(super) fn direction(

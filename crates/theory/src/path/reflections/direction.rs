@@ -75,6 +75,7 @@ impl OutgoingDirections<'_> {
                 (direction, at, steradians)
             }
         };
+        // Either density may have drawn the direction, so it is weighted by both.
         let mut density = (1.0 - by_lobe) * targets.density(end) / steradians;
         if let Some(lobe) = lobe {
             let at = self.angles(direction);
@@ -88,7 +89,7 @@ impl OutgoingDirections<'_> {
         })
     }
 
-    /// Returns the density of directions in the coordinates by which they are aimed.
+    /// The density of directions in the coordinates by which they are aimed.
     fn targets(
         &self,
         st: [f64; 2],
@@ -105,7 +106,7 @@ impl OutgoingDirections<'_> {
         GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])
     }
 
-    /// Returns the longitude and latitude of a direction relative to the central ray.
+    /// The longitude and latitude of a direction relative to the central ray.
     fn angles(&self, direction: DVec3) -> [f64; 2] {
         let ScatteringSurface {
             frame, outgoing, ..
@@ -114,7 +115,7 @@ impl OutgoingDirections<'_> {
         [longitude - outgoing[0], latitude - outgoing[1]]
     }
 
-    /// Returns the point where a ray along a direction ends the leg, in the coordinates of the aim.
+    /// The point where a ray along a direction ends the leg, in the coordinates of the aim.
     /// Returns `None` if the ray misses the end of the leg.
     fn end(&self, direction: DVec3) -> Option<[f64; 2]> {
         let DirectionCoordinates::Patch { patch, .. } = self.aim else {

@@ -32,7 +32,7 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the Gaussian that a map takes to this Gaussian.
+    /// The Gaussian that a map takes to this Gaussian.
     pub(super) fn before(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = map.inverse()?;
         Some(Self {
@@ -41,7 +41,7 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of incident light that a lobe scatters into light of this Gaussian. The
+    /// The Gaussian of incident light that a lobe scatters into light of this Gaussian. The
     /// angles of this Gaussian are relative to the central ray. The lobe blurs the Gaussian about
     /// the mirror direction. If the surface is diffuse, the angles of the incident light are
     /// arbitrary.
@@ -66,13 +66,13 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the product of this Gaussian and an independent Gaussian along each axis, given by
+    /// The product of this Gaussian and an independent Gaussian along each axis, given by
     /// means and inverse variances.
     pub(super) fn narrowed(&self, means: [f64; 4], precisions: [f64; 4]) -> Option<Self> {
         self.times(&means, &diagonal(precisions))
     }
 
-    /// Returns the marginal Gaussian of two coordinates; the other two coordinates are arbitrary.
+    /// The marginal Gaussian of two coordinates; the other two coordinates are arbitrary.
     pub(super) fn marginal(&self, of: [usize; 2]) -> Gaussian<2> {
         Gaussian {
             mean: of.map(|i| self.mean[i]),
@@ -80,7 +80,7 @@ impl Gaussian<4> {
         }
     }
 
-    /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two
+    /// The Gaussian of two coordinates, positions or slopes, conditional on the other two
     /// coordinates. Returns `None` if the Gaussian has zero width along the other two coordinates.
     pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {
         let others = match a {
@@ -126,7 +126,7 @@ impl Conditional {
 }
 
 impl Gaussian<2> {
-    /// Returns a Gaussian with the given mean, and with the same standard deviation along both
+    /// A Gaussian with the given mean, and with the same standard deviation along both
     /// axes.
     pub(super) fn round(mean: [f64; 2], width: Option<f64>) -> Self {
         let width = width.unwrap_or(DIFFUSE);
@@ -136,14 +136,14 @@ impl Gaussian<2> {
         }
     }
 
-    /// Returns the product of two Gaussians.
+    /// The product of two Gaussians.
     pub(super) fn product(&self, other: &Self) -> Option<Self> {
         self.times(&other.mean, &inverse(&other.covariance)?)
     }
 }
 
 impl<const N: usize> Gaussian<N> {
-    /// Returns the product of this Gaussian and another, given by its mean and the inverse of its
+    /// The product of this Gaussian and another, given by its mean and the inverse of its
     /// covariance.
     fn times(&self, mean: &[f64; N], precision: &Matrix<N>) -> Option<Self> {
         let own = inverse(&self.covariance)?;
@@ -237,7 +237,7 @@ impl GuideMixture {
     }
 }
 
-/// Returns the variance of a window's profile.
+/// The variance of a window's profile.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(half) => half * half * (1.0 / 3.0 - 2.0 / (PI * PI)),

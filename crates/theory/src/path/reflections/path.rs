@@ -89,7 +89,7 @@ struct PathState {
 }
 
 impl<'a> FieldPaths<'a> {
-    /// Returns the paths of a light field; `None` if the chain does not determine a guide. Rays of
+    /// The paths of a light field; `None` if the chain does not determine a guide. Rays of
     /// the last leg are aimed by angles.
     pub(super) fn new(view: &'a Observed, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
@@ -117,7 +117,7 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Returns the coordinates by which rays of the last leg are aimed at its end, if they are
+    /// The coordinates by which rays of the last leg are aimed at its end, if they are
     /// known.
     pub(super) fn at_plane(&self) -> Option<DirectionCoordinates> {
         DirectionCoordinates::at_plane(self.view, &self.chain.scatterers)
@@ -135,12 +135,12 @@ impl<'a> FieldPaths<'a> {
         !matches!(self.aims.last(), Some(DirectionCoordinates::Angles))
     }
 
-    /// Returns the number of scatterers of the path.
+    /// The number of scatterers of the path.
     pub(super) fn scatterers(&self) -> usize {
         self.chain.scatterers.len()
     }
 
-    /// Returns the path for a point of the unit cube; `None` if the path carries no light.
+    /// The path for a point of the unit cube; `None` if the path carries no light.
     pub(super) fn drawn(&self, at: &[f64; DIMENSIONS], at_mask: AtMask<'_>) -> Option<DrawnPath> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
@@ -206,7 +206,7 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Returns the point where light meets the surface at the end of a leg. Returns `None` if the
+    /// The point where light meets the surface at the end of a leg. Returns `None` if the
     /// light misses this surface.
     fn arrive(&self, leg: usize, going: &mut PathState, at_mask: AtMask<'_>) -> Option<DVec3> {
         let PathState { ray, .. } = going;
@@ -323,7 +323,7 @@ fn is_beside(target: DVec3, point: DVec3, length: f64) -> bool {
 /// and the surface do not narrow these angles.
 const FRONT: f64 = 0.6;
 
-/// Returns the guide for incident light at a surface, given the guide for outgoing light.
+/// The guide for incident light at a surface, given the guide for outgoing light.
 fn on_surface(
     guide: &Gaussian<4>,
     surface: &PathSurface,

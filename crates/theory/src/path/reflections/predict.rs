@@ -9,7 +9,7 @@ use crate::path::differences::{Differences, DrawnField};
 use crate::path::{AtMask, Observed, PreparedPath};
 use crate::predicted::Predicted;
 
-/// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
+/// The windowed spectrum, with the derivatives with respect to given parameters. The result
 /// is bitwise identical on any number of threads.
 pub(crate) fn predict(
     view: &Observed,
@@ -32,7 +32,7 @@ pub(crate) fn predict(
     Differences::new(&paths, moved, of).complete(found, over)
 }
 
-/// Returns the prediction by paths from the light, also where
+/// The prediction by paths from the light, also where
 /// [`Model::predict`](crate::Model::predict) follows rays back from the plane. The exact sum and the
 /// chain are then sums over the same paths.
 #[must_use]
@@ -52,7 +52,7 @@ pub(crate) fn with_rays(
     }
 }
 
-/// Returns the paths whose last leg is aimed in the better way, at positions or by angles. Angles
+/// The paths whose last leg is aimed in the better way, at positions or by angles. Angles
 /// are better for narrow slopes, and positions for a narrow window close to a wide surface.
 fn best<'a>(
     view: &'a Observed,

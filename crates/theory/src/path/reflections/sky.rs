@@ -77,7 +77,7 @@ impl<'a> SkyRays<'a> {
         })
     }
 
-    /// Returns the ray for a point of the unit cube; `None` if the ray does not go forward.
+    /// The ray for a point of the unit cube; `None` if the ray does not go forward.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> Option<SkyRay> {
         let of_sky = |at| {
             -self
@@ -131,7 +131,7 @@ impl<'a> SkyRays<'a> {
 }
 
 impl Coordinates {
-    /// Returns the direction of light with the given coordinates; `None` if the light comes from
+    /// The direction of light with the given coordinates; `None` if the light comes from
     /// behind the surface.
     fn direction(&self, at: [f64; 2]) -> Option<DVec3> {
         match self {
@@ -143,7 +143,7 @@ impl Coordinates {
         }
     }
 
-    /// Returns the coordinates of a direction of light, and the solid angle in steradians per unit
+    /// The coordinates of a direction of light, and the solid angle in steradians per unit
     /// of the coordinates. The light may come from behind, because a diffuse surface also scatters
     /// light from behind.
     fn of(&self, direction: DVec3) -> ([f64; 2], f64) {

@@ -76,7 +76,7 @@ fn lamp(side: f64) -> Light {
     }
 }
 
-/// Returns an environment of two lobes beside the central ray, or a map of nearly the same
+/// An environment of two lobes beside the central ray, or a map of nearly the same
 /// radiance. `y` is −1 for the mirror image of the environment, and 1 otherwise.
 fn sky(as_map: bool, y: f64) -> Light {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
@@ -103,7 +103,7 @@ fn reflectance(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// Returns a patch around a point; the patch faces a direction in the plane of X and Z.
+/// A patch around a point; the patch faces a direction in the plane of X and Z.
 fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
     Patch {
         frame: Frame::new(at, facing.normalize(), DVec3::Y).unwrap(),
@@ -117,12 +117,12 @@ fn surface(patch: Patch, interaction: Interaction) -> PathSurface {
     PathSurface::new(&patch.frame.origin.to_string(), patch, interaction)
 }
 
-/// Returns a plane through a point, perpendicular to a ray.
+/// A plane through a point, perpendicular to a ray.
 fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
     Plane::orthogonal(Frame::new(origin, d, x).unwrap())
 }
 
-/// Returns the difference between two predictions in units of their errors.
+/// The difference between two predictions in units of their errors.
 fn apart(a: &Predicted, b: &Predicted) -> f64 {
     let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
     a.slices.relative_difference(&b.slices) / error

@@ -15,7 +15,7 @@ pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 
         .sum()
 }
 
-/// Returns the value of a single BRDF, for the same directions and normal as in [`sum`].
+/// The value of a single BRDF, for the same directions and normal as in [`sum`].
 #[must_use]
 pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     factors(brdf, normal.dot(from), normal.dot(to)) * lobe(brdf, normal, from, to)
@@ -40,7 +40,7 @@ fn between(table: &AngleTable, cos: f64) -> f64 {
         .sum()
 }
 
-/// Returns a BRDF without its factors f and h.
+/// A BRDF without its factors f and h.
 pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
     if cos_from <= 0.0 || cos_to <= 0.0 {
@@ -49,6 +49,7 @@ pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let lobe = match brdf.lobe {
         Lobe::Lambertian => reflectance(brdf.fresnel, cos_from) / PI,
         Lobe::Phong { exponent } => {
+            // The cosine between `to` and the mirror direction of `from`.
             let cos = 2.0 * cos_from * cos_to - from.dot(to);
             let lobe = (exponent + 1.0) / TAU * libm::pow(cos.max(0.0), exponent);
             lobe * reflectance(brdf.fresnel, cos_from)
@@ -90,12 +91,12 @@ pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
-/// Returns the smallest [`angular_width`] of several BRDFs, or `None` if none of them has a width.
+/// The smallest [`angular_width`] of several BRDFs, or `None` if none of them has a width.
 pub(crate) fn narrowest<'a>(brdfs: impl Iterator<Item = &'a Brdf>) -> Option<f64> {
     brdfs.filter_map(angular_width).min_by(f64::total_cmp)
 }
 
-/// Returns the angle from the mirror direction, in radians, within which most of a lobe lies, or
+/// The angle from the mirror direction, in radians, within which most of a lobe lies, or
 /// `None` if the lobe covers all directions.
 fn angular_width(brdf: &Brdf) -> Option<f64> {
     match brdf.lobe {
@@ -113,7 +114,7 @@ fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
     [(1.0 - cos * cos).max(0.0) / (cos * cos), half.dot(from)]
 }
 
-/// Returns the microfacet BRDF D G F / (4 cos θi cos θo), where D follows from the density of
+/// The microfacet BRDF D G F / (4 cos θi cos θo), where D follows from the density of
 /// slopes P(tan² tilt) = D cos⁴.
 fn microfacets(
     brdf: &Brdf,
@@ -129,7 +130,7 @@ fn microfacets(
         / (4.0 * cos_from * cos_to)
 }
 
-/// Returns Smith's shadowing of Beckmann slopes, 2/(1 + erf a + e^(−a²)/(a√π)) with a = 1/(α tan θ)
+/// Smith's shadowing of Beckmann slopes, 2/(1 + erf a + e^(−a²)/(a√π)) with a = 1/(α tan θ)
 /// (Walter et al. 2007, Eq. 26).
 fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     let sine = (1.0 - cos * cos).max(0.0).sqrt();
@@ -140,7 +141,7 @@ fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     2.0 / (1.0 + libm::erf(a) + libm::exp(-a * a) / (a * PI.sqrt()))
 }
 
-/// Returns the fraction of unpolarised light that is reflected at the angle of incidence with the
+/// The fraction of unpolarised light that is reflected at the angle of incidence with the
 /// given cosine.
 pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
     unpolarised_reflectance(fresnel, cos, 1.0 - cos * cos)

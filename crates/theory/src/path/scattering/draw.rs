@@ -38,7 +38,7 @@ impl LightStrategy {
         |strategy| strategy.quarters ^= true,
     ];
 
-    /// Returns this strategy without the choices that have no effect for a system.
+    /// This strategy without the choices that have no effect for a system.
     pub(super) fn in_effect(self, system: &PathSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
@@ -50,7 +50,7 @@ impl LightStrategy {
         }
     }
 
-    /// Returns the approximate computing time of a ray with this strategy. The time is relative to
+    /// The approximate computing time of a ray with this strategy. The time is relative to
     /// the time of a ray that is sampled by the window and has a single part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
@@ -99,7 +99,7 @@ impl PlaneRaySampler {
         }
     }
 
-    /// Returns a ray (x, y, u, v) at the plane and the density with which it was sampled.
+    /// A ray (x, y, u, v) at the plane and the density with which it was sampled.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> ([f64; 4], f64) {
         let [along_x, along_y, along_u, along_v] = &self.window;
         let [[x, of_x], [y, of_y]] = [along_x.draw(a), along_y.draw(b)];
@@ -216,7 +216,7 @@ impl<'a> Lights<'a> {
         Lights::new(system, self.sky.clone(), strategy)
     }
 
-    /// Returns the sampled parts of the light for a point of the surface. There is a single part,
+    /// The sampled parts of the light for a point of the surface. There is a single part,
     /// or there is one part in each quarter of the unit square. Each part's density is multiplied
     /// by the number of parts, so that the parts' contributions add up to a mean.
     pub(super) fn each<'b>(
@@ -233,7 +233,7 @@ impl<'a> Lights<'a> {
         })
     }
 
-    /// Returns a sampled part of the light, and the sampling density in the part's measure.
+    /// A sampled part of the light, and the sampling density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(LightPart, f64)> {
         let light = &self.system.light;
         if !light.has_extent() {
@@ -252,7 +252,7 @@ impl<'a> Lights<'a> {
         Some((part, 0.5 * (by_light + by_lobe)))
     }
 
-    /// Returns a part of the light that is sampled independently of the surface, and its density.
+    /// A part of the light that is sampled independently of the surface, and its density.
     fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -267,7 +267,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the part of an environment from which light travels along `along`, and its density;
+    /// The part of an environment from which light travels along `along`, and its density;
     /// `from` is the direction from which this light comes, in the axes of the map.
     fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
@@ -280,7 +280,7 @@ impl<'a> Lights<'a> {
         Some((LightPart::Sky { slopes, radiance }, density))
     }
 
-    /// Returns the part of the light that is seen in a direction `wi` from the surface. Also
+    /// The part of the light that is seen in a direction `wi` from the surface. Also
     /// returns the density of this part if parts are sampled independently of the surface.
     fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
         match &self.system.light {
@@ -296,7 +296,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the direction towards a part of the light, a unit vector away from the surface.
+    /// The direction towards a part of the light, a unit vector away from the surface.
     fn direction(&self, leaving: &Leaving, part: LightPart) -> DVec3 {
         match part {
             LightPart::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
@@ -305,7 +305,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the solid angle in steradians per unit of the part's measure.
+    /// The solid angle in steradians per unit of the part's measure.
     fn steradians(&self, leaving: &Leaving, part: LightPart) -> f64 {
         let DVec3 { x, y, z } = leaving.point;
         match part {
@@ -315,7 +315,7 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// Returns the density of the directions of a system's environment, for a surface with this normal.
+/// The density of the directions of a system's environment, for a surface with this normal.
 pub(super) fn sky_density(system: &PathSystem, normal: DVec3) -> Option<Arc<SkyDensity<'_>>> {
     match &system.light {
         Light::Environment { environment } => SkyDensity::new(environment, normal).map(Arc::new),
@@ -323,7 +323,7 @@ pub(super) fn sky_density(system: &PathSystem, normal: DVec3) -> Option<Arc<SkyD
     }
 }
 
-/// Returns the slopes of light along a direction, or `None` if the direction does not point
+/// The slopes of light along a direction, or `None` if the direction does not point
 /// towards positive z.
 fn forward(along: DVec3) -> Option<[f64; 2]> {
     (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
@@ -358,7 +358,7 @@ impl LobeDensity {
         (wi.z > 0.0).then(|| self.local.vector_to_world(wi))
     }
 
-    /// Returns the density per steradian of incident directions.
+    /// The density per steradian of incident directions.
     fn density(&self, wi: DVec3) -> f64 {
         let wi = self.local.vector_to_local(wi);
         let half = (wi + self.wo).normalize();
@@ -374,13 +374,13 @@ impl LobeDensity {
     }
 }
 
-/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
+/// The width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
 /// this width is sampled by the densities of the window and the light.
 fn narrowest_of(system: &PathSystem) -> Option<f64> {
     narrowest(system.scatterer().1.terms.iter().map(|term| &term.brdf))
 }
 
-/// Returns the distance from the light's axis to the farthest point of a shape.
+/// The distance from the light's axis to the farthest point of a shape.
 fn radius(shape: &Shape) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
         let [low, high] = shape.bounds().extent(axis);
@@ -396,14 +396,14 @@ pub(crate) fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     [r * cos, r * sin]
 }
 
-/// Returns the density 1/(π w² (1 + r²/w²)²) with r² = p² + q². The density is as wide as a lobe
+/// The density 1/(π w² (1 + r²/w²)²) with r² = p² + q². The density is as wide as a lobe
 /// and has longer tails than any lobe.
 pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     let squared = width * width;
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }
 
-/// Returns the inverse and the determinant of a matrix, or `None` if the matrix is nearly
+/// The inverse and the determinant of a matrix, or `None` if the matrix is nearly
 /// singular.
 fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
     let determinant = a * d - b * c;

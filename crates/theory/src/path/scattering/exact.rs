@@ -19,7 +19,7 @@ pub(super) struct Leaving {
 }
 
 impl PathSystem {
-    /// Returns the point of the surface from which the ray (x, y, u, v) of a plane comes, or
+    /// The point of the surface from which the ray (x, y, u, v) of a plane comes, or
     /// `None` if the ray does not come from the surface.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
         let frame = &plane.frame;
@@ -45,7 +45,7 @@ impl PathSystem {
         })
     }
 
-    /// Returns the point where a line leaves through the front of the surface, the normal at this
+    /// The point where a line leaves through the front of the surface, the normal at this
     /// point, and the direction of the line.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
         let (patch, _) = self.scatterer();
@@ -56,7 +56,7 @@ impl PathSystem {
 }
 
 impl PreparedPath<'_> {
-    /// Returns the radiance that leaves the surface due to a part of the light, per unit of the
+    /// The radiance that leaves the surface due to a part of the light, per unit of the
     /// part's measure.
     pub(super) fn radiance(&self, leaving: &Leaving, part: LightPart, at_mask: AtMask<'_>) -> f64 {
         let Leaving {

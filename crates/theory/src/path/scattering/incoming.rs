@@ -32,7 +32,7 @@ pub(super) struct IncomingLight {
 }
 
 impl PreparedPath<'_> {
-    /// Returns the light that a point receives from a part of the light; the point is in the frame
+    /// The light that a point receives from a part of the light; the point is in the frame
     /// at the light. `passes` gives the fraction of a ray that arrives, for the ray and its length.
     pub(super) fn incoming(
         &self,

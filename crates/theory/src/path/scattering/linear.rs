@@ -50,7 +50,7 @@ impl<'a> Linear<'a> {
         })
     }
 
-    /// Returns the point that represents a position (s, t) on the surface. The point is in the
+    /// The point that represents a position (s, t) on the surface. The point is in the
     /// plane perpendicular to the light's axis.
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
         let [offset_s, offset_t, ..] = self.onto.offset;
@@ -59,7 +59,7 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.scatterer.frame.origin.z)
     }
 
-    /// Returns the radiance that a part of the light causes along the ray with coordinates z at the
+    /// The radiance that a part of the light causes along the ray with coordinates z at the
     /// plane, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the
     /// mirror direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, path: &PreparedPath<'_>, z: [f64; 4], part: LightPart) -> f64 {
@@ -98,7 +98,7 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// Returns the BRDF that the chain uses. Each of the last two arguments is a longitude and a
+/// The BRDF that the chain uses. Each of the last two arguments is a longitude and a
 /// latitude: first of the direction from which light arrives, then of the direction towards which
 /// it leaves. The lobe is the BRDF's lobe for the central ray, which arrives at the angle
 /// `incidence`; it is a function of the angles from the mirror direction. The factors f and h
@@ -128,7 +128,7 @@ pub(crate) fn kernel(
     factors * lobe
 }
 
-/// Returns the unit direction with a longitude and a latitude relative to the normal.
+/// The unit direction with a longitude and a latitude relative to the normal.
 fn away(theta: f64, phi: f64) -> DVec3 {
     let ((sin, cos), (up, across)) = (libm::sincos(theta), libm::sincos(phi));
     DVec3::new(across * sin, up, across * cos)

@@ -35,7 +35,7 @@ pub(crate) use predict::{predict, with_rays};
 use crate::geometry::AffineMap;
 use crate::path::PathChain;
 
-/// Returns the map from coordinates of the plane to local coordinates, at the surface, of the
+/// The map from coordinates of the plane to local coordinates, at the surface, of the
 /// direction in which a ray leaves.
 fn back(chain: &PathChain) -> Option<AffineMap<4>> {
     let mut back = chain.maps[1].inverse()?;

@@ -13,7 +13,7 @@ use crate::predicted::Predicted;
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
-/// Returns the windowed spectrum of the light that a surface scatters, and its derivatives with
+/// The windowed spectrum of the light that a surface scatters, and its derivatives with
 /// respect to given parameters.
 ///
 /// Rays are sampled at the plane. Each ray leaves the surface at a point, and one or four parts of
@@ -56,7 +56,7 @@ pub(crate) fn with_rays(
     then(&nets::SampledNets::new(&field, budget));
 }
 
-/// Returns the strategy that has the smallest error for the same computing time.
+/// The strategy that has the smallest error for the same computing time.
 fn fastest(
     view: &Observed,
     chain: Option<&PathChain>,
@@ -69,7 +69,7 @@ fn fastest(
     })
 }
 
-/// Returns a reduced budget that takes as much time for this system as `budget` takes for an
+/// A reduced budget that takes as much time for this system as `budget` takes for an
 /// environment of few lobes.
 fn affordable(system: &PathSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
@@ -78,7 +78,7 @@ fn affordable(system: &PathSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// Returns the exact prediction, and the difference between a given chain and this prediction. The
+/// The exact prediction, and the difference between a given chain and this prediction. The
 /// chain may differ from the result of [`chain`](crate::path::chain()).
 #[must_use]
 pub fn compare_chain(
@@ -90,7 +90,7 @@ pub fn compare_chain(
     predict(view, Some(chain), &[], over, budget)
 }
 
-/// Returns the computing time of a ray, relative to a ray in an environment of few lobes.
+/// The computing time of a ray, relative to a ray in an environment of few lobes.
 fn cost(system: &PathSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {
@@ -102,7 +102,7 @@ fn cost(system: &PathSystem) -> f64 {
     }
 }
 
-/// Returns the strategy with the smallest cost. The search is greedy and tries each of the choices
+/// The strategy with the smallest cost. The search is greedy and tries each of the choices
 /// once.
 fn best(system: &PathSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
@@ -151,7 +151,7 @@ impl<'a> ScatteredField<'a> {
         }
     }
 
-    /// Returns the field of a changed model, whose rays at the plane are the same.
+    /// The field of a changed model, whose rays at the plane are the same.
     fn of<'b>(&'b self, view: &'b Observed, strategy: LightStrategy) -> ScatteredField<'b> {
         ScatteredField {
             view,
@@ -163,7 +163,7 @@ impl<'a> ScatteredField<'a> {
         }
     }
 
-    /// Returns a ray at the plane, the factor that multiplies its radiance, and the point where
+    /// A ray at the plane, the factor that multiplies its radiance, and the point where
     /// the ray leaves the surface.
     fn leaving(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
         let (z, density) = self.rays.draw([*a, *b, *c, *d]);
@@ -176,7 +176,7 @@ impl<'a> ScatteredField<'a> {
         Some((z, factor, self.view.system.leaving(&self.view.plane, z)?))
     }
 
-    /// Returns the radiance of a ray at the plane due to a part of the light, per unit of the
+    /// The radiance of a ray at the plane due to a part of the light, per unit of the
     /// part's measure.
     fn radiance(&self, leaving: &Leaving, part: LightPart, at_mask: AtMask<'_>) -> f64 {
         let plane = &self.view.plane;
@@ -195,7 +195,7 @@ impl<'a> ScatteredField<'a> {
         }
     }
 
-    /// Returns the fraction of a ray's radiance that passes between the surface and the plane.
+    /// The fraction of a ray's radiance that passes between the surface and the plane.
     fn passes(&self, leaving: &Leaving, at_mask: AtMask<'_>) -> f64 {
         let ray = LegRay {
             point: leaving.point,
@@ -206,7 +206,7 @@ impl<'a> ScatteredField<'a> {
     }
 }
 
-/// Returns a ray's radiance divided by its sampling density, where 0/0 counts as 0.
+/// A ray's radiance divided by its sampling density, where 0/0 counts as 0.
 fn over(radiance: f64, density: f64) -> f64 {
     if radiance == 0.0 {
         0.0

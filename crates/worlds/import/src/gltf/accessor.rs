@@ -28,7 +28,7 @@ struct AccessorRows {
 }
 
 impl AccessorRows {
-    /// Returns the bytes of a number, with zeros behind them.
+    /// The bytes of a number, with zeros behind them.
     fn word(&self, row: usize, column: usize) -> [u8; 4] {
         let size = self.component.size();
         let at = self.start + row * self.stride + column * size;
@@ -138,7 +138,7 @@ impl GltfReader<'_> {
         })
     }
 
-    /// Returns the offset of the first element and the number of elements, if all elements lie
+    /// The offset of the first element and the number of elements, if all elements lie
     /// within their view and the view lies within its buffer.
     fn fit(
         &self,
@@ -159,7 +159,7 @@ impl GltfReader<'_> {
         (fits && stride >= element).then_some((view_start + within, count))
     }
 
-    /// Returns the bytes of a view, or `None` if a cause of refusal was reported.
+    /// The bytes of a view, or `None` if a cause of refusal was reported.
     pub(super) fn view(&mut self, number: usize) -> Option<Vec<u8>> {
         let view = self.root.buffer_views.get(number)?;
         let bytes = self.buffer(view.buffer.value())?;
@@ -174,7 +174,7 @@ impl GltfReader<'_> {
         found.map(<[u8]>::to_vec)
     }
 
-    /// Returns the bytes of a buffer, or `None` if a cause of refusal was reported.
+    /// The bytes of a buffer, or `None` if a cause of refusal was reported.
     fn buffer(&mut self, number: usize) -> Option<Arc<[u8]>> {
         if let Some(known) = self.buffers.get(&number) {
             return known.clone();
@@ -199,7 +199,7 @@ impl GltfReader<'_> {
             .ok_or_else(|| format!("has {found} bytes, but its byteLength is {said}"))
     }
 
-    /// Returns the bytes that a URI refers to.
+    /// The bytes that a URI refers to.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
             let bytes = decoded(data, self.files.left())?;

@@ -91,7 +91,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Returns the width and height in pixels.
+/// The width and height in pixels.
 fn size(aspect: f64) -> [usize; 2] {
     [ACROSS, whole((ACROSS as f64 / aspect).round()).max(1)]
 }

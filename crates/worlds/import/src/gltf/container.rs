@@ -43,7 +43,7 @@ pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option
     })
 }
 
-/// Returns the JSON and the buffer of a binary file.
+/// The JSON and the buffer of a binary file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let word = |at: usize| {
         let four = bytes.get(at..at.checked_add(4)?)?;
@@ -80,7 +80,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
 }
 
-/// Returns whether all indices are within range and all keywords are known; adds causes of
+/// Whether all indices are within range and all keywords are known; adds causes of
 /// refusal otherwise.
 fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let version = &root.asset.version;

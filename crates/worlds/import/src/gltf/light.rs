@@ -66,7 +66,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns the half-angles of the inner and the outer cone of a spot light.
+    /// The half-angles of the inner and the outer cone of a spot light.
     fn cone(&self, spot: &Spot, path: &str) -> Option<[f64; 2]> {
         let [inner, outer] = [spot.inner_cone_angle, spot.outer_cone_angle].map(f64::from);
         // The tolerance is needed because π/2 rounded to 32 bits is slightly larger than π/2.

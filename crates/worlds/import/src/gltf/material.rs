@@ -21,7 +21,7 @@ const PBR: &str = "pbrMetallicRoughness";
 const BASE_COLOR: &str = "pbrMetallicRoughness.baseColorTexture";
 
 impl<'a> GltfReader<'a> {
-    /// Returns the material with a given number in the file. If no number is given, returns the
+    /// The material with a given number in the file. If no number is given, returns the
     /// default material of the specification. Returns `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
@@ -72,7 +72,7 @@ impl<'a> GltfReader<'a> {
         })
     }
 
-    /// Returns the scattering of a material, on one side or on both sides.
+    /// The scattering of a material, on one side or on both sides.
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
@@ -85,7 +85,7 @@ impl<'a> GltfReader<'a> {
         self.with_glass(draft, opaque)
     }
 
-    /// Returns the emission of a material's front. The outer `None` means that a cause of refusal
+    /// The emission of a material's front. The outer `None` means that a cause of refusal
     /// was reported.
     #[expect(
         clippy::option_option,
@@ -113,7 +113,7 @@ impl<'a> GltfReader<'a> {
             .map(Some)
     }
 
-    /// Returns the opacity, or `None` if a cause of refusal was reported.
+    /// The opacity, or `None` if a cause of refusal was reported.
     fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
         let source = draft.source;
         let factor = f64::from(source.pbr_metallic_roughness.base_color_factor.0[3]);
@@ -155,7 +155,7 @@ impl<'a> GltfReader<'a> {
         self.tell_others(path, extensions.others.keys());
     }
 
-    /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
+    /// The scattering at the front of an opaque material, or `None` if a cause of refusal
     /// was reported.
     fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
@@ -194,7 +194,7 @@ impl<'a> GltfReader<'a> {
         )
     }
 
-    /// Returns a factor from 0 to 1, as a channel of the picture of metallic and roughness.
+    /// A factor from 0 to 1, as a channel of the picture of metallic and roughness.
     fn channel(
         &mut self,
         draft: &mut Draft<'_>,
@@ -214,7 +214,7 @@ impl<'a> GltfReader<'a> {
         self.textured(draft, info, &field, channel(factor))
     }
 
-    /// Returns the index of refraction, or `None` if a cause of refusal was reported.
+    /// The index of refraction, or `None` if a cause of refusal was reported.
     fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let extensions = draft.source.extensions.as_ref();
         let Some(ior) = extensions.and_then(|of| of.ior.as_ref()) else {
@@ -224,7 +224,7 @@ impl<'a> GltfReader<'a> {
         self.within(&path, ior.ior.0, [1.0, 10.0])
     }
 
-    /// Returns the reflectance of the coat of a dielectric at normal and at grazing incidence.
+    /// The reflectance of the coat of a dielectric at normal and at grazing incidence.
     fn coat(&self, draft: &Draft<'_>) -> Option<[f64; 2]> {
         let index = self.index(draft)?;
         let normal = ((index - 1.0) / (index + 1.0)).powi(2);
@@ -248,7 +248,7 @@ impl<'a> GltfReader<'a> {
         ])
     }
 
-    /// Returns a material that transmits a share of the light and otherwise behaves like `opaque`,
+    /// A material that transmits a share of the light and otherwise behaves like `opaque`,
     /// or `None` if a cause of refusal was reported.
     fn with_glass(&mut self, draft: &mut Draft<'_>, opaque: Material) -> Option<Material> {
         let extensions = draft.source.extensions.as_ref();
@@ -331,7 +331,7 @@ fn is_lit(source: &GltfMaterial) -> bool {
     source.emissive_factor.0.iter().any(|v| *v > 0.0)
 }
 
-/// Returns the isotropic microfacet roughness α, or `None` for a smooth surface.
+/// The isotropic microfacet roughness α, or `None` for a smooth surface.
 fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,

@@ -51,7 +51,7 @@ impl<'a> GltfReader<'a> {
         self.tell_unmet(&met);
     }
 
-    /// Returns the root nodes of the default scene or, in a file without scenes, the nodes without
+    /// The root nodes of the default scene or, in a file without scenes, the nodes without
     /// a parent.
     fn tops(&self) -> Vec<usize> {
         let chosen = self.root.scene.map_or(0, |scene| scene.value());
@@ -115,7 +115,7 @@ impl<'a> GltfReader<'a> {
         self.tell_others(path, extensions.iter().flat_map(|of| of.others.keys()));
     }
 
-    /// Returns the local transform of a node, or `None` if a cause of refusal was reported.
+    /// The local transform of a node, or `None` if a cause of refusal was reported.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
@@ -129,7 +129,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns a matrix from sixteen numbers in column-major order.
+    /// A matrix from sixteen numbers in column-major order.
     fn matrix(&self, matrix: [f32; 16], path: &str) -> Option<DAffine3> {
         let m = matrix.map(f64::from);
         let is_affine = [m[3], m[7], m[11], m[15] - 1.0]
@@ -146,7 +146,7 @@ impl<'a> GltfReader<'a> {
         Some(DAffine3::from_mat3_translation(linear, column(3)))
     }
 
-    /// Returns the transform that first scales, then rotates, then translates.
+    /// The transform that first scales, then rotates, then translates.
     fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
         let turn = match &node.rotation {
@@ -173,7 +173,7 @@ impl<'a> GltfReader<'a> {
 }
 
 impl PlacedNode<'_> {
-    /// Returns the position and orientation of a camera or light, without scales and mirrors. A
+    /// The position and orientation of a camera or light, without scales and mirrors. A
     /// camera or light points along −Z with Y up in glTF, and along Z in a world.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;

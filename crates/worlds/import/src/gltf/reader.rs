@@ -72,7 +72,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Returns the world that the file describes.
+    /// The world that the file describes.
     pub(super) fn world(mut self) -> World {
         self.tell_leftovers();
         self.nodes();

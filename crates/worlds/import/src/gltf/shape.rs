@@ -96,7 +96,7 @@ impl<'a> GltfReader<'a> {
         parts.finish().map(Arc::new)
     }
 
-    /// Returns the triangles of a primitive, with the texture coordinates that its material uses;
+    /// The triangles of a primitive, with the texture coordinates that its material uses;
     /// returns `None` if the primitive has no triangles, or if a cause of refusal was reported.
     fn parts(&mut self, primitive: &Primitive, path: &str, set: Option<u32>) -> Option<MeshParts> {
         let Checked::Valid(mode) = primitive.mode else {
@@ -135,7 +135,7 @@ impl<'a> GltfReader<'a> {
         Some(parts)
     }
 
-    /// Returns the corners of a primitive without indices, which are all vertices in order.
+    /// The corners of a primitive without indices, which are all vertices in order.
     fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
         let count = u32::try_from(count.min(MAX_CORNERS)).ok()?;
         self.accept(path, self.files.spend(u64::from(count) * 4))?;
@@ -188,7 +188,7 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
     primitive.attributes.get(&Checked::Valid(of)).copied()
 }
 
-/// Returns the triangles of a list, a strip or a fan. Every second triangle of a strip is flipped.
+/// The triangles of a list, a strip or a fan. Every second triangle of a strip is flipped.
 fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => listed.as_chunks().0.to_vec(),

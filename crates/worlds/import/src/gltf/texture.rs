@@ -28,7 +28,7 @@ pub(super) enum TextureChannel {
 }
 
 impl GltfReader<'_> {
-    /// Returns the texture of a factor, and of the picture that it multiplies, if there is one.
+    /// The texture of a factor, and of the picture that it multiplies, if there is one.
     /// Returns `None` if a cause of refusal was reported.
     pub(super) fn textured(
         &mut self,
@@ -43,7 +43,7 @@ impl GltfReader<'_> {
         }
     }
 
-    /// Returns the value for a white, opaque pixel, as a constant texture.
+    /// The value for a white, opaque pixel, as a constant texture.
     fn constant(&self, level: &TextureChannel) -> Texture {
         Texture::Constant(match *level {
             TextureChannel::Color(factor) => self.color.of(factor),
@@ -53,7 +53,7 @@ impl GltfReader<'_> {
         })
     }
 
-    /// Returns a picture of a material, or `None` if a cause of refusal was reported.
+    /// A picture of a material, or `None` if a cause of refusal was reported.
     fn bitmap(
         &mut self,
         draft: &mut Draft<'_>,
@@ -112,7 +112,7 @@ impl GltfReader<'_> {
         (across, filter)
     }
 
-    /// Returns the map of a texture transform, which scales, then rotates, then translates.
+    /// The map of a texture transform, which scales, then rotates, then translates.
     /// Rotations follow the Khronos viewer and three.js: u' = u cos r + v sin r.
     fn to_uv(&self, of: &TextureTransform, path: &str) -> Option<DAffine2> {
         let [scale, offset] = [of.scale.0, of.offset.0].map(|v| DVec2::from(v.map(f64::from)));
@@ -128,7 +128,7 @@ impl GltfReader<'_> {
         is_in_range.then_some(map)
     }
 
-    /// Returns one number for each pixel of an image, or `None` if a cause of refusal was reported.
+    /// One number for each pixel of an image, or `None` if a cause of refusal was reported.
     fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = (image, format!("{level:?}"));
         if let Some(known) = self.rasters.get(&key) {
@@ -180,7 +180,7 @@ fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
     }
 }
 
-/// Returns the file extension of the format that the first bytes of an image indicate.
+/// The file extension of the format that the first bytes of an image indicate.
 fn extension(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("png"),

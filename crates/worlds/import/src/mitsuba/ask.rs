@@ -9,7 +9,7 @@ use etendue_world::Texture;
 use glam::{DAffine3, DVec3};
 
 impl MitsubaObject<'_> {
-    /// Returns the property with the given name. If several nested objects have the same name, the
+    /// The property with the given name. If several nested objects have the same name, the
     /// last of these objects counts, as in Mitsuba.
     pub(super) fn property(&self, name: &str) -> Option<&ObjectProperty> {
         let found = self.last(name)?;
@@ -21,7 +21,7 @@ impl MitsubaObject<'_> {
         self.last(name).is_some()
     }
 
-    /// Returns the value of a property, as converted by `read`, or `None` if the property is
+    /// The value of a property, as converted by `read`, or `None` if the property is
     /// missing, or if a cause of refusal was reported.
     fn ask<'v, T>(
         &'v self,
@@ -168,7 +168,7 @@ impl MitsubaObject<'_> {
         self.fault("filename", format!("file {} {error}", quoted(name)))
     }
 
-    /// Returns the index of refraction inside divided by the index outside. `inside` names the
+    /// The index of refraction inside divided by the index outside. `inside` names the
     /// default material inside.
     pub(super) fn relative_index(&self, inside: &str) -> Option<f64> {
         let inside = self.one_index("int_ior", inside);
@@ -191,7 +191,7 @@ impl MitsubaObject<'_> {
         })
     }
 
-    /// Returns a texture, unless one of its values is below 0.
+    /// A texture, unless one of its values is below 0.
     pub(super) fn not_negative(&self, name: &str, texture: Texture) -> Option<Texture> {
         let lowest = texture.smallest();
         if lowest >= 0.0 {
@@ -203,7 +203,7 @@ impl MitsubaObject<'_> {
         )
     }
 
-    /// Returns the position of a property in the file or, if the property is missing, the
+    /// The position of a property in the file or, if the property is missing, the
     /// position of the object.
     pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.last(name).map_or(&self.place, |found| &found.place)
@@ -223,7 +223,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the object that a property contains or refers to.
+    /// The object that a property contains or refers to.
     pub(super) fn object_of(&self, property: &'a ObjectProperty) -> Option<ObjectRef<'a>> {
         match &property.value {
             Value::Object(at) => self.objects.get(*at),
@@ -233,7 +233,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns all objects of a kind within an object, in the order of the file. Each is returned
+    /// All objects of a kind within an object, in the order of the file. Each is returned
     /// with the property that holds it.
     pub(super) fn children(
         &self,
@@ -250,7 +250,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// Returns the only child object of a kind, if one exists. A second child of the same kind is a
+    /// The only child object of a kind, if one exists. A second child of the same kind is a
     /// cause of refusal.
     pub(super) fn child(&self, object: ObjectRef<'a>, kind: &str) -> Option<ObjectRef<'a>> {
         let found = self.children(object, kind);

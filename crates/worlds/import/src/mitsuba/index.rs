@@ -80,7 +80,7 @@ const METALS: &[(&str, MetalRgb, MetalRgb)] = &[
     ("d-C, d-C_palik", [2.70872, 2.318826, 2.228898], [0.0, 0.0, 0.0]),
 ];
 
-/// Returns the index of refraction of a material, or `None` for an unknown name.
+/// The index of refraction of a material, or `None` for an unknown name.
 pub(super) fn named_index(name: &str) -> Option<f64> {
     let name = name.to_lowercase();
     let found = NAMED.iter().find(|(known, _)| *known == name);

@@ -63,7 +63,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns a vector, which is given either directly or by a transform, or `default` if neither
+    /// A vector, which is given either directly or by a transform, or `default` if neither
     /// is given. Returns `None` if a cause of refusal was reported.
     fn either(
         &self,
@@ -150,7 +150,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Returns the factor on the picture of a projector or of an environment.
+    /// The factor on the picture of a projector or of an environment.
     fn scale(&self, object: ObjectRef<'a>) -> Option<f64> {
         object.number_or("scale", 1.0, "0 or more", |s| s >= 0.0)
     }

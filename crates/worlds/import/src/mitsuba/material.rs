@@ -20,7 +20,7 @@ const MAX_DEPTH: usize = 8;
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, principled, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the index of a material, or `None` if a cause of refusal was reported.
+    /// The index of a material, or `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, object: ObjectRef<'a>) -> Option<usize> {
         let mesh = self.current_mesh.as_ref();
         let mesh = mesh.map_or(0, |mesh| Arc::as_ptr(&mesh.triangles).addr());
@@ -37,7 +37,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// Returns the material of shapes that specify no material, which is black for emitters and
+    /// The material of shapes that specify no material, which is black for emitters and
     /// otherwise diffuse.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
@@ -95,7 +95,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Returns the complex index of a conductor, n and k. The inner `None` means a perfect
+    /// The complex index of a conductor, n and k. The inner `None` means a perfect
     /// reflector. The outer `None` means that a cause of refusal was reported.
     fn metal(&mut self, object: ObjectRef<'a>) -> Option<Option<[f64; 2]>> {
         let name = match object.has("material") {
@@ -269,7 +269,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
+    /// All nested bsdfs, or `None` if a cause of refusal was reported.
     fn nested(&mut self, object: ObjectRef<'a>, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, "bsdf");
         // All bsdfs are read even after a failure, to find all causes of refusal.
@@ -332,7 +332,7 @@ impl<'a> MitsubaReader<'a> {
             .map(as_number)
     }
 
-    /// Returns the index that Mitsuba uses in place of 1 for a material that transmits light.
+    /// The index that Mitsuba uses in place of 1 for a material that transmits light.
     fn least_index(&self, object: ObjectRef<'a>) -> f64 {
         match object.has("eta") {
             true => 1.001,
@@ -340,7 +340,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the index of refraction. The file states either the index or `specular`; the
+    /// The index of refraction. The file states either the index or `specular`; the
     /// reflectance at normal incidence is then 0.08 `specular`.
     fn principled_index(&mut self, object: ObjectRef<'a>) -> Option<f64> {
         if !object.has("eta") {
@@ -365,7 +365,7 @@ fn lets_through(material: &Material) -> bool {
     }
 }
 
-/// Returns the index whose reflectance at normal incidence is 0.08 `specular`.
+/// The index whose reflectance at normal incidence is 0.08 `specular`.
 fn of_specular(specular: f64) -> f64 {
     2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0
 }

@@ -105,7 +105,7 @@ impl<'a> MitsubaReader<'a> {
         Some(path)
     }
 
-    /// Returns the triangles of a mesh, and whether their normals were computed.
+    /// The triangles of a mesh, and whether their normals were computed.
     fn triangles(
         &mut self,
         object: ObjectRef<'a>,
@@ -198,7 +198,7 @@ fn bits(linear: DMat3) -> [u64; 9] {
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 
-/// Returns the direction to which a map takes Z, or `None` for a singular map.
+/// The direction to which a map takes Z, or `None` for a singular map.
 pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
     map.matrix3.z_axis.try_normalize()
 }

@@ -48,13 +48,13 @@ impl MitsubaAttributes {
         }
     }
 
-    /// Returns the approximate size in memory, in bytes.
+    /// The approximate size in memory, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let all = self.read.iter().map(|of| size_of_val(of.values.as_slice()));
         all.sum::<usize>() as u64
     }
 
-    /// Returns the names of the file's attributes, for messages.
+    /// The names of the file's attributes, for messages.
     pub(super) fn listed(&self) -> String {
         if self.names.is_empty() {
             return "the mesh has no attributes".to_owned();

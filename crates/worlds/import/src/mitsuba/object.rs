@@ -67,12 +67,12 @@ pub(super) enum Value {
 }
 
 impl MitsubaObject<'_> {
-    /// Returns the kind and the plugin of the object, for messages.
+    /// The kind and the plugin of the object, for messages.
     pub(super) fn title(&self) -> String {
         format!("{} {}", self.kind, quoted(&self.plugin))
     }
 
-    /// Returns the property with the given name, the last one if there are several.
+    /// The property with the given name, the last one if there are several.
     pub(super) fn last(&self, name: &str) -> Option<&ObjectProperty> {
         self.properties
             .iter()
@@ -97,7 +97,7 @@ const KINDS: [&str; 13] = [
     "volume",
 ];
 
-/// Returns the kind of object that an element of this name defines. A spectrum with a type is a
+/// The kind of object that an element of this name defines. A spectrum with a type is a
 /// texture.
 pub(super) fn kind_of(name: &str, has_type: bool) -> Option<&'static str> {
     let name = if name == "spectrum" && has_type {
@@ -109,7 +109,7 @@ pub(super) fn kind_of(name: &str, has_type: bool) -> Option<&'static str> {
 }
 
 impl Value {
-    /// Returns a noun that names the kind of the value in messages.
+    /// A noun that names the kind of the value in messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

@@ -33,12 +33,12 @@ impl Parameters {
         known.or_insert_with(|| value.to_owned());
     }
 
-    /// Returns the names that the caller has set but the file does not use.
+    /// The names that the caller has set but the file does not use.
     pub(super) fn unused(&self) -> impl Iterator<Item = &String> {
         self.unused.iter()
     }
 
-    /// Returns the text after parameters are replaced by their values. `\$` stands for a dollar
+    /// The text after parameters are replaced by their values. `\$` stands for a dollar
     /// sign. If the names of several parameters match, the longest name is used.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
         let mut made = String::new();

@@ -20,7 +20,7 @@ const MAX_INCLUDES: usize = 1000;
 const MOST_FOLDERS: usize = 64;
 
 impl Tree<'_> {
-    /// Returns the value of a property.
+    /// The value of a property.
     pub(super) fn value(
         &mut self,
         name: &str,

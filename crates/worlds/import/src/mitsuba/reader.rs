@@ -65,7 +65,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the world of the scene, which is the first object.
+    /// The world of the scene, which is the first object.
     pub(super) fn world(mut self) -> World {
         let scene = &self.objects[0];
         scene.is_used.set(true);

@@ -114,7 +114,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns half of the width that the picture of a camera or a projector has at distance 1.
+    /// Half of the width that the picture of a camera or a projector has at distance 1.
     pub(super) fn half_width(
         &self,
         object: ObjectRef<'a>,
@@ -151,7 +151,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Returns the focal length in millimetres, for 35 mm film.
+    /// The focal length in millimetres, for 35 mm film.
     fn focal_length(&self, object: ObjectRef<'a>) -> Option<f64> {
         if !object.has("focal_length") {
             return Some(50.0);
@@ -167,7 +167,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the placement of the camera with the axis Z normalised, and the original length of
+    /// The placement of the camera with the axis Z normalised, and the original length of
     /// Z.
     fn orthographic(&self, object: ObjectRef<'a>) -> Option<(DAffine3, f64)> {
         if !object.has("to_world") {
@@ -188,7 +188,7 @@ impl<'a> MitsubaReader<'a> {
         Some((map, stretch))
     }
 
-    /// Returns the width and height in pixels.
+    /// The width and height in pixels.
     fn film(&self, object: ObjectRef<'a>) -> Option<[usize; 2]> {
         let Some(film) = self.child(object, "film") else {
             return Some(SIZE);
@@ -299,7 +299,7 @@ impl<'a> MitsubaReader<'a> {
         object.note(message);
     }
 
-    /// Returns the depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and
+    /// The depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and
     /// depth 2 adds direct light.
     fn depth(&self, object: ObjectRef<'a>) -> Option<u32> {
         match object.whole("max_depth")? {

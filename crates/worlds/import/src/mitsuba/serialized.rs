@@ -40,7 +40,7 @@ pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts
     Ok(parts)
 }
 
-/// Returns the version of the file, and the offset of the packed mesh.
+/// The version of the file, and the offset of the packed mesh.
 fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     let version = head(bytes, 0)?;
     if number == 0 {
@@ -66,7 +66,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     Ok((version, offset.saturating_add(4)))
 }
 
-/// Returns the version that is stored at the start of a mesh.
+/// The version that is stored at the start of a mesh.
 fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     let Some([a, b, c, d]) = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
         return Err("ends before a mesh".to_owned());

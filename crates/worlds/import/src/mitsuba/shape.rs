@@ -61,7 +61,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Returns the shapes of a group, which are read once for all instances.
+    /// The shapes of a group, which are read once for all instances.
     fn group(&mut self, group: ObjectRef<'a>) -> Rc<[Shape]> {
         if let Some(known) = self.groups.get(&group.number) {
             return Rc::clone(known);
@@ -226,7 +226,7 @@ impl<'a> MitsubaReader<'a> {
         self.world.lights.push(Light::Sheet { shape, exitance });
     }
 
-    /// Returns the plugin of a shape's emitter, and the radiance, or what else it states.
+    /// The plugin of a shape's emitter, and the radiance, or what else it states.
     fn shape_emission(
         &mut self,
         object: ObjectRef<'a>,

@@ -19,7 +19,7 @@ use std::sync::Arc;
 const ALLOWED: &str = "bitmap, checkerboard, mesh_attribute, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
-    /// Returns the texture of a property. If the property is missing, returns a constant. Returns
+    /// The texture of a property. If the property is missing, returns a constant. Returns
     /// `None` if a cause of refusal was reported.
     pub(super) fn texture_or(
         &mut self,
@@ -101,7 +101,7 @@ impl<'a> MitsubaReader<'a> {
         Some(Texture::Constant(constant))
     }
 
-    /// Returns the value of a spectrum that a scene states as a single number.
+    /// The value of a spectrum that a scene states as a single number.
     fn uniform(&self, value: f64, role: Role) -> f64 {
         match (self.color, role) {
             (Color::Luminance, _) | (_, Role::Reflectance | Role::Number) => value,
@@ -188,7 +188,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Returns the picture given by `filename`.
+    /// The picture given by `filename`.
     pub(super) fn picture(&mut self, object: ObjectRef<'a>, raw: bool) -> Option<Arc<Raster>> {
         let name = object.file_name()?;
         let found = self.files.find(&object.folders, name);
@@ -208,7 +208,7 @@ impl<'a> MitsubaReader<'a> {
         DAffine2::from_mat2_translation(linear, map.translation.truncate())
     }
 
-    /// Returns the names of the attributes that the textures within an object use, in alphabetical
+    /// The names of the attributes that the textures within an object use, in alphabetical
     /// order.
     pub(super) fn wanted(&mut self, object: ObjectRef<'a>) -> Rc<[String]> {
         if let Some(known) = self.wanted.get(&object.number) {
@@ -255,7 +255,7 @@ impl<'a> MitsubaReader<'a> {
         values.map(Texture::OfMesh)
     }
 
-    /// Returns the numbers of an attribute. A colour becomes one number.
+    /// The numbers of an attribute. A colour becomes one number.
     fn values(
         &self,
         mesh: &MitsubaMesh,
@@ -297,7 +297,7 @@ impl<'a> MitsubaReader<'a> {
     }
 }
 
-/// Returns a texture whose values are used as numbers and not as colours. Mitsuba 3.9.1 swaps the
+/// A texture whose values are used as numbers and not as colours. Mitsuba 3.9.1 swaps the
 /// two values of a checkerboard in such a texture.
 pub(super) fn as_number(texture: Texture) -> Texture {
     match texture {

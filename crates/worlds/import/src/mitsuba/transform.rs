@@ -14,7 +14,7 @@ const UNIT: f64 = 1e-3;
 /// products of rounded numbers.
 const RIGID: f64 = 1e-3;
 
-/// Returns the map of one element; `Err` describes a fault.
+/// The map of one element; `Err` describes a fault.
 pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
     match name {
         "translate" | "scale" => {
@@ -55,7 +55,7 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
     }
 }
 
-/// Returns the map from coordinates in which Z points to `target` and Y upwards.
+/// The map from coordinates in which Z points to `target` and Y upwards.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     let along = (target - origin).try_normalize()?;
     let up = match up {
@@ -67,7 +67,7 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     Some(DAffine3::from_mat3_translation(linear, origin))
 }
 
-/// Returns the frame around a unit vector, as in Mitsuba (Duff et al. 2017).
+/// The frame around a unit vector, as in Mitsuba (Duff et al. 2017).
 pub(super) fn frame(z: DVec3) -> DMat3 {
     let sign = 1.0_f64.copysign(z.z);
     let a = -1.0 / (sign + z.z);
@@ -77,7 +77,7 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-/// Returns the rotation about a unit axis (Rodrigues). Another length of the axis also distorts.
+/// The rotation about a unit axis (Rodrigues). Another length of the axis also distorts.
 fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     let (sin, cos) = libm::sincos(angle);
     let column =
@@ -95,7 +95,7 @@ pub(super) fn is_rigid(map: DAffine3) -> bool {
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// Returns the map of a matrix. `numbers` has the matrix row by row: all 16 numbers, or the 9
+/// The map of a matrix. `numbers` has the matrix row by row: all 16 numbers, or the 9
 /// numbers of the linear part.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
@@ -137,7 +137,7 @@ pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a
     find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
 }
 
-/// Returns an error if an element has attributes other than the given ones.
+/// An error if an element has attributes other than the given ones.
 pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
     let mut all = attributes.iter();
     match all.find(|(name, _)| !names.contains(&name.as_str())) {

@@ -190,7 +190,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Returns the attributes with parameters substituted.
+    /// The attributes with parameters substituted.
     pub(super) fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
         let mut made = Vec::new();
         for attribute in node.attributes() {
@@ -393,7 +393,7 @@ fn parsed<'t>(text: &'t str, name: &Rc<str>) -> Result<Document<'t>, (SourcePlac
     })
 }
 
-/// Returns the offset of an element with too many attributes, if any.
+/// The offset of an element with too many attributes, if any.
 fn crowded(text: &str) -> Option<usize> {
     let mut at = 0;
     while let Some(start) = text[at..].find('<').map(|i| at + i) {
@@ -428,7 +428,7 @@ pub(super) fn unknown(id: &str) -> String {
     format!("no object has id {}", quoted(id))
 }
 
-/// Returns the first number of a version such as 3.0.0.
+/// The first number of a version such as 3.0.0.
 fn version(text: &str) -> Option<u32> {
     text.trim().split('.').next()?.parse().ok()
 }

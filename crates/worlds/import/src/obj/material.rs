@@ -22,7 +22,7 @@ impl ObjReader<'_> {
         }
     }
 
-    /// Returns the surface of a material, or `None` if a cause of refusal was reported.
+    /// The surface of a material, or `None` if a cause of refusal was reported.
     pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);
@@ -75,7 +75,7 @@ impl ObjReader<'_> {
         Some(side.on_both_sides())
     }
 
-    /// Returns the colour `Kd` times the picture of `Kd`.
+    /// The colour `Kd` times the picture of `Kd`.
     fn diffuse(&mut self, entry: &MtlEntry) -> Option<Texture> {
         match &entry.map_kd {
             Some(map) => {
@@ -135,7 +135,7 @@ impl ObjReader<'_> {
         })
     }
 
-    /// Returns the emission. The outer `None` means that a cause of refusal was reported.
+    /// The emission. The outer `None` means that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means that a cause was reported"
@@ -150,7 +150,7 @@ impl ObjReader<'_> {
         Some((factor > 0.0).then_some(Texture::Constant(factor)))
     }
 
-    /// Returns a picture times factors, or `None` if a cause of refusal was reported. The levels
+    /// A picture times factors, or `None` if a cause of refusal was reported. The levels
     /// of the picture are sRGB unless `raw` is set.
     fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);

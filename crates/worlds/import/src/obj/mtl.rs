@@ -273,7 +273,7 @@ pub(super) fn read(
     }
 }
 
-/// Returns the message that a statement is left out, with the number of occurrences of the
+/// The message that a statement is left out, with the number of occurrences of the
 /// statement.
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {

@@ -132,7 +132,7 @@ impl<'a> ObjReader<'a> {
         made
     }
 
-    /// Returns the triangles of a part with vertices that no other part uses, and with texture
+    /// The triangles of a part with vertices that no other part uses, and with texture
     /// coordinates whose v points downwards.
     fn parts(&self, mesh: &DetailedMesh, part: &MaterialPart) -> Option<MeshParts> {
         let mut known: HashMap<u32, u32> = HashMap::new();
@@ -164,7 +164,7 @@ impl<'a> ObjReader<'a> {
     }
 }
 
-/// Returns an attribute of the vertices, or `None` if the attribute is missing or zero at every
+/// An attribute of the vertices, or `None` if the attribute is missing or zero at every
 /// vertex.
 fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
     let found: Vec<T> = order

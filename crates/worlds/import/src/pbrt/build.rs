@@ -355,18 +355,18 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns the message that a medium is refused.
+/// The message that a medium is refused.
 pub(super) fn no_medium(name: &str) -> String {
     let name = quoted(name);
     format!("medium {name}: participating media are not supported")
 }
 
-/// Returns the text of a file, unpacked if its name ends in .gz.
+/// The text of a file, unpacked if its name ends in .gz.
 pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
     text(bytes(files, path)?)
 }
 
-/// Returns the bytes of a file, unpacked if its name ends in .gz.
+/// The bytes of a file, unpacked if its name ends in .gz.
 pub(super) fn bytes(files: &Files, path: &Path) -> Result<Vec<u8>, String> {
     let packed = files.read(path)?;
     if !has_extension(path, "gz") {

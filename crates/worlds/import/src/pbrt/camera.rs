@@ -91,7 +91,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Returns the visible range: minimum and maximum x, then minimum and maximum y. The shorter
+    /// The visible range: minimum and maximum x, then minimum and maximum y. The shorter
     /// side of the visible range is from −1 to 1.
     fn window(&self, entity: &Entity<'_>, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
         let film = w as f64 / h as f64;
@@ -115,7 +115,7 @@ impl PbrtReader<'_> {
         Err(entity.refuse(message))
     }
 
-    /// Returns a perspective projection, where `fov` spans the shorter side, from −1 to 1.
+    /// A perspective projection, where `fov` spans the shorter side, from −1 to 1.
     fn perspective(&self, entity: &Entity<'_>, scale: f64, window: [f64; 4]) -> Read<Projection> {
         let fov = entity.float_within("fov", 90.0, "between 0 and 180 degrees", |a| {
             0.0 < a && a < 180.0
@@ -136,7 +136,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Returns the placement of an orthographic camera, in which X and Y are scaled by the width
+    /// The placement of an orthographic camera, in which X and Y are scaled by the width
     /// of the picture.
     fn flat(
         &self,
@@ -171,7 +171,7 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Returns the width and height in pixels.
+    /// The width and height in pixels.
     fn film(&self, whole: &SourcePlace) -> Read<[usize; 2]> {
         let Some(film) = self.scene.settings.get("Film") else {
             return Ok(SIZE);

@@ -51,7 +51,7 @@ pub(super) struct Entity<'a> {
 }
 
 impl Entity<'_> {
-    /// Returns the last parameter with the given name among the parameters of the entity, or else
+    /// The last parameter with the given name among the parameters of the entity, or else
     /// among the default parameters.
     pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {
         let all = self.own.iter().rev().chain(self.defaults.iter().rev());
@@ -64,7 +64,7 @@ impl Entity<'_> {
         self.find(name).is_some()
     }
 
-    /// Returns the position of a parameter in the file or, if the parameter is missing, the
+    /// The position of a parameter in the file or, if the parameter is missing, the
     /// position of the directive.
     pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.find(name).map_or(&self.place, |p| &p.place)
@@ -99,7 +99,7 @@ impl Entity<'_> {
         }
     }
 
-    /// Returns the values of a parameter, which must have one of the given types, or `None` if
+    /// The values of a parameter, which must have one of the given types, or `None` if
     /// the parameter is missing.
     fn values(&self, name: &str, kinds: &[&str]) -> Read<Option<&ParameterValues>> {
         let Some(parameter) = self.find(name) else {
@@ -331,7 +331,7 @@ fn add(found: &mut Option<ParameterValues>, token: Token<'_>) -> Result<(), Stri
     Ok(())
 }
 
-/// Returns the values if they match the type; otherwise adds a cause of refusal.
+/// The values if they match the type; otherwise adds a cause of refusal.
 fn checked(
     values: ParameterValues,
     (kind, arity): (&str, usize),

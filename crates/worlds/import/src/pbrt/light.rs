@@ -30,7 +30,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns the colour of a light times its scale.
+    /// The colour of a light times its scale.
     fn strength(&self, entity: &Entity<'_>, name: &str) -> Read<f64> {
         let color = self.number_of(entity, name, Role::Emission);
         let scale = self.scale_of(entity)?;
@@ -41,7 +41,7 @@ impl PbrtReader<'_> {
         entity.float_within("scale", 1.0, "0 or more", |v| v >= 0.0)
     }
 
-    /// Returns the factor that gives a light its required power or illuminance. As in pbrt, powers
+    /// The factor that gives a light its required power or illuminance. As in pbrt, powers
     /// and illuminances of 0 or less are ignored.
     pub(super) fn wanted(&self, entity: &Entity<'_>, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(name)?;
@@ -68,7 +68,7 @@ impl PbrtReader<'_> {
         Err(entity.refuse("a place out of range; allowed: coordinates up to 1e9"))
     }
 
-    /// Returns the vector from the point `from` to the point `to`, in world coordinates.
+    /// The vector from the point `from` to the point `to`, in world coordinates.
     fn way(&self, entity: &Entity<'_>, to_world: DAffine3) -> Read<DVec3> {
         let from = entity.point_or("from", DVec3::ZERO);
         let to = entity.point_or("to", DVec3::Z);
@@ -136,7 +136,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Returns the emission of a shape before it is scaled to a required power.
+    /// The emission of a shape before it is scaled to a required power.
     pub(super) fn shape_emission(
         &mut self,
         shape: &PbrtShape<'_>,
@@ -165,7 +165,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns the emission of a surface whose radiance is given by a picture.
+    /// The emission of a surface whose radiance is given by a picture.
     fn shown(&mut self, area: &Entity<'_>, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
@@ -185,7 +185,7 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// Returns the emission scaled to the required power. As in pbrt, the area of the shape is
+    /// The emission scaled to the required power. As in pbrt, the area of the shape is
     /// taken before the transform, except that the area of triangles is taken after the transform.
     pub(super) fn powered(
         &self,

@@ -26,7 +26,7 @@ const DEFAULT: usize = usize::MAX;
 const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
 
 impl PbrtReader<'_> {
-    /// Returns the index of a material, or `None` if there is no surface at all.
+    /// The index of a material, or `None` if there is no surface at all.
     pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
         let number = match of {
             MaterialOf::Default => DEFAULT,
@@ -191,7 +191,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Returns the ratio of the index of refraction behind the surface to the index on the side
+    /// The ratio of the index of refraction behind the surface to the index on the side
     /// of the normal.
     fn index(&mut self, entity: &Entity<'_>) -> Read<f64> {
         let index = match entity.find("eta") {
@@ -235,7 +235,7 @@ impl PbrtReader<'_> {
         made?.ok_or_else(|| fault("does not describe a surface"))
     }
 
-    /// Returns the roughness, or `None` for a smooth surface.
+    /// The roughness, or `None` for a smooth surface.
     fn roughness(&mut self, entity: &Entity<'_>, uv: Uv) -> Read<Option<Roughness>> {
         let remaps = entity.truth("remaproughness", true);
         let both = ["uroughness", "vroughness"].map(|name| {

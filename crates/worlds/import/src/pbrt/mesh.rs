@@ -148,7 +148,7 @@ impl PbrtReader<'_> {
         Ok((parts, faces))
     }
 
-    /// Returns an attribute of the vertices. As in pbrt, an attribute with a wrong number of values
+    /// An attribute of the vertices. As in pbrt, an attribute with a wrong number of values
     /// is left out.
     fn beside<T>(
         &self,
@@ -188,7 +188,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Returns the indices of each face of `N` corners, among `count` vertices.
+/// The indices of each face of `N` corners, among `count` vertices.
 fn faces<const N: usize>(
     entity: &Entity<'_>,
     indices: &[f64],
@@ -218,7 +218,7 @@ fn faces<const N: usize>(
     Ok(indices.chunks_exact(N).map(face).collect())
 }
 
-/// Returns the triangles without shared vertices, and with pbrt's default texture coordinates.
+/// The triangles without shared vertices, and with pbrt's default texture coordinates.
 fn apart(parts: MeshParts) -> Result<MeshParts, String> {
     let count = u32::try_from(parts.corners.len()).ok();
     let count = count.filter(|count| count.checked_mul(3).is_some());

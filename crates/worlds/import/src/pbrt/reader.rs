@@ -88,7 +88,7 @@ impl<'a> PbrtReader<'a> {
         }
     }
 
-    /// Returns the world of the scene.
+    /// The world of the scene.
     pub(super) fn world(mut self, whole: &SourcePlace) -> World {
         self.integrator();
         self.settings();
@@ -101,12 +101,12 @@ impl<'a> PbrtReader<'a> {
         self.world
     }
 
-    /// Returns the path of a file; names are relative to the folder of the scene.
+    /// The path of a file; names are relative to the folder of the scene.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, String> {
         self.files.find(std::slice::from_ref(&self.folder), name)
     }
 
-    /// Returns the file name parameter of an entity.
+    /// The file name parameter of an entity.
     pub(super) fn file_name<'b>(&self, entity: &'b Entity<'_>) -> Read<&'b str> {
         let name = entity.text("filename")?;
         name.ok_or_else(|| {

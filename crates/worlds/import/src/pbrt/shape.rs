@@ -79,7 +79,7 @@ impl PbrtReader<'_> {
         true
     }
 
-    /// Returns a shape placed by its own transform, or `None` if a cause of refusal was reported,
+    /// A shape placed by its own transform, or `None` if a cause of refusal was reported,
     /// or if there is no surface.
     fn shape(&mut self, shape: &PbrtShape<'_>, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
@@ -146,7 +146,7 @@ impl PbrtReader<'_> {
         self.world.add_material(Material::Mask { opacity, of })
     }
 
-    /// Returns whether the front of a shape in pbrt is opposite to the front of the shape's
+    /// Whether the front of a shape in pbrt is opposite to the front of the shape's
     /// geometry in a world.
     ///
     /// pbrt computes normals of meshes after placement, so a mirroring placement keeps the front of
@@ -183,7 +183,7 @@ impl PbrtReader<'_> {
         entity.float_within("radius", 1.0, "above 0", |r| r > 0.0)
     }
 
-    /// Returns the share of a full revolution that a shape covers.
+    /// The share of a full revolution that a shape covers.
     fn revolution(&self, entity: &Entity<'_>) -> Read<f64> {
         Ok(
             entity.float_within("phimax", 360.0, "above 0 to 360", |a| a > 0.0 && a <= 360.0)?
@@ -244,7 +244,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Returns a texture that is 1 on the first `share` of a revolution and 0 on the rest, or `None`
+/// A texture that is 1 on the first `share` of a revolution and 0 on the rest, or `None`
 /// for a full revolution. The product of (u, v) and `axis` is the azimuth divided by 2π.
 fn sector(share: f64, axis: DVec2) -> Option<Texture> {
     // A checkerboard has two squares for each unit. The longer part of the revolution fills the

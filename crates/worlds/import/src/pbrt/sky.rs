@@ -54,7 +54,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Returns the illuminance of a surface with normal Z.
+/// The illuminance of a surface with normal Z.
 fn illuminance(square: &Raster) -> f64 {
     let side = square.width();
     let pixel = 4.0 * PI / (side * side) as f64;
@@ -65,7 +65,7 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// Returns the picture over longitude and latitude, from pole to pole. Each pixel is the mean over
+/// The picture over longitude and latitude, from pole to pole. Each pixel is the mean over
 /// its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
@@ -86,14 +86,14 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     Raster::new(w, h, (0..w * h).map(pixel).collect())
 }
 
-/// Returns the pixel that a direction falls into.
+/// The pixel that a direction falls into.
 fn nearest(square: &Raster, toward: DVec3) -> f64 {
     let side = square.width();
     let [x, y] = place(toward).map(|v| whole(v.clamp(0.0, 1.0) * side as f64).min(side - 1));
     square.values()[y * side + x].max(0.0)
 }
 
-/// Returns the position of a direction in the unit square.
+/// The position of a direction in the unit square.
 fn place(toward: DVec3) -> [f64; 2] {
     let [x, y, z] = toward.abs().to_array();
     let r = (1.0 - z).max(0.0).sqrt();
@@ -108,7 +108,7 @@ fn place(toward: DVec3) -> [f64; 2] {
     [u.copysign(toward.x), v.copysign(toward.y)].map(|v| (v + 1.0) / 2.0)
 }
 
-/// Returns the direction for a position in the unit square.
+/// The direction for a position in the unit square.
 fn direction(place: [f64; 2]) -> DVec3 {
     let [u, v] = place.map(|v| 2.0 * v - 1.0);
     let signed = 1.0 - (u.abs() + v.abs());

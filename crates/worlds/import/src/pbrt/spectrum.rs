@@ -55,7 +55,7 @@ enum PbrtSpectrum {
 }
 
 impl PbrtReader<'_> {
-    /// Returns the number for a colour or spectrum, or `None` if the parameter is missing.
+    /// The number for a colour or spectrum, or `None` if the parameter is missing.
     pub(super) fn number_of(
         &self,
         entity: &Entity<'_>,
@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
         Ok(Some(self.color.of(color)))
     }
 
-    /// Returns the colour of a light. A spectrum is normalised to luminance 1, and a colour keeps
+    /// The colour of a light. A spectrum is normalised to luminance 1, and a colour keeps
     /// the luminance of its numbers.
     fn light_color(
         &self,
@@ -182,7 +182,7 @@ fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
     }
 }
 
-/// Returns the spectrum of Planck's law, normalised to a maximum of 1.
+/// The spectrum of Planck's law, normalised to a maximum of 1.
 fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
     // The logarithms are taken relative to 560 nm, to avoid overflow in the ratio.
     let log = |nm: f64| {

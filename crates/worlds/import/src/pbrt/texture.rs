@@ -20,7 +20,7 @@ const MAX_DEPTH: usize = 16;
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
 
 impl PbrtReader<'_> {
-    /// Returns the texture of a parameter, or a constant if the parameter is missing.
+    /// The texture of a parameter, or a constant if the parameter is missing.
     pub(super) fn texture_or(
         &mut self,
         entity: &Entity<'_>,
@@ -121,7 +121,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Returns a checkerboard with squares of one unit. The first value applies where the two
+    /// A checkerboard with squares of one unit. The first value applies where the two
     /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity<'_>, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or("dimension", 2)? != 2 {
@@ -162,7 +162,7 @@ impl PbrtReader<'_> {
         ))
     }
 
-    /// Returns the map from (u, v) of a surface in a world to (u, v) of the texture.
+    /// The map from (u, v) of a surface in a world to (u, v) of the texture.
     fn mapping(&self, entity: &Entity<'_>, uv: Uv) -> Read<DAffine2> {
         entity.choice("mapping", &[("uv", ())])?;
         let float = |name, default| entity.float_or(name, default);
@@ -171,7 +171,7 @@ impl PbrtReader<'_> {
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
     }
 
-    /// Returns a texture with the function `of` applied to each of its values.
+    /// A texture with the function `of` applied to each of its values.
     pub(super) fn mapped(
         &self,
         entity: &Entity<'_>,
@@ -269,7 +269,7 @@ impl PbrtReader<'_> {
         self.picture(entity, curve)
     }
 
-    /// Returns the picture given by `filename`.
+    /// The picture given by `filename`.
     pub(super) fn picture(
         &mut self,
         entity: &Entity<'_>,
@@ -282,7 +282,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Returns the curve of a picture whose encoding is not given: only PNG files are sRGB.
+/// The curve of a picture whose encoding is not given: only PNG files are sRGB.
 pub(super) fn default_curve(name: &str) -> TransferCurve {
     match has_extension(Path::new(name), "png") {
         true => TransferCurve::Srgb,
@@ -290,7 +290,7 @@ pub(super) fn default_curve(name: &str) -> TransferCurve {
     }
 }
 
-/// Returns the map that flips v. In the pictures of pbrt, v points upwards; in the pictures of a
+/// The map that flips v. In the pictures of pbrt, v points upwards; in the pictures of a
 /// world, v points downwards.
 pub(super) fn upside_down() -> DAffine2 {
     let linear = DMat2::from_diagonal(DVec2::new(1.0, -1.0));

@@ -90,17 +90,17 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Returns a place in this file.
+    /// A place in this file.
     pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
         SourcePlace::at(&self.file, at.line, at.column)
     }
 
-    /// Returns the current position.
+    /// The current position.
     pub(super) fn here(&self) -> SourcePlace {
         self.place(self.at)
     }
 
-    /// Returns the next token without consuming it.
+    /// The next token without consuming it.
     pub(super) fn peek(&mut self) -> Option<&(Token<'a>, LineColumn)> {
         if self.peeked.is_none() {
             self.peeked = self.read();
@@ -108,7 +108,7 @@ impl<'a> Tokens<'a> {
         self.peeked.as_ref()
     }
 
-    /// Returns the next token, unless it begins a directive or the file ends.
+    /// The next token, unless it begins a directive or the file ends.
     pub(super) fn peek_value(&mut self) -> Option<(Token<'a>, LineColumn)> {
         let next = self.peek().cloned();
         next.filter(|(token, _)| !matches!(token, Token::Word(word) if is_directive(word)))

@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// of rounded numbers, so they deviate slightly.
 const ALIKE: f64 = 1e-3;
 
-/// Returns a rotation by degrees about an axis of any length.
+/// A rotation by degrees about an axis of any length.
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     let axis = DVec3::new(x, y, z).try_normalize();
     let axis = axis.ok_or("the axis has length 0")?;
@@ -20,7 +20,7 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     )))
 }
 
-/// Returns the map to camera coordinates with Z forward, Y up and X to the right, which are
+/// The map to camera coordinates with Z forward, Y up and X to the right, which are
 /// left-handed like all coordinates of pbrt.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
@@ -31,7 +31,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat3_translation(linear, eye).inverse())
 }
 
-/// Returns the map of a matrix that is given by 16 numbers, column by column.
+/// The map of a matrix that is given by 16 numbers, column by column.
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     let matrix = DMat4::from_cols_array(numbers);
     if matrix.row(3) != DVec4::W {
@@ -40,7 +40,7 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// Returns a map without its scale, and the scale, or `None` if the map shears or scales axes
+/// A map without its scale, and the scale, or `None` if the map shears or scales axes
 /// unequally.
 pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
     let scale = libm::cbrt(map.matrix3.determinant().abs());

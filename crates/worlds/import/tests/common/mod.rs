@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Returns a scene of version 3 with this content, which begins on line 2.
+/// A scene of version 3 with this content, which begins on line 2.
 pub(crate) fn scene(inside: &str) -> String {
     format!("<scene version=\"3.0.0\">\n{inside}\n</scene>")
 }
@@ -27,7 +27,7 @@ pub(crate) fn read_in(inside: &str, folder: &Path, color: Color) -> Result<Impor
     told(import_mitsuba(&scene(inside), folder, &options))
 }
 
-/// Returns the causes of a refusal as texts.
+/// The causes of a refusal as texts.
 pub(crate) fn told(read: Result<Imported, Refused>) -> Result<Imported, Vec<String>> {
     read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
 }
@@ -38,32 +38,32 @@ pub(crate) fn read_files(files: &[(&str, &[u8])]) -> Result<Imported, Vec<String
     told(import(&folder.path().join(files[0].0), &Options::default()))
 }
 
-/// Returns the world of a scene that names no files.
+/// The world of a scene that names no files.
 pub(crate) fn world(inside: &str) -> World {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.unwrap_or_else(|causes| panic!("{causes:#?}")).world
 }
 
-/// Returns all causes to refuse a scene without files.
+/// All causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.map(|read| read.world).unwrap_err()
 }
 
-/// Returns all notes on a scene without files.
+/// All notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     all_notes(&read_in(inside, folder.path(), Color::Luminance).unwrap())
 }
 
-/// Returns the notes of an import as texts.
+/// The notes of an import as texts.
 pub(crate) fn all_notes(read: &Imported) -> Vec<String> {
     read.notes.iter().map(ToString::to_string).collect()
 }
 
-/// Returns a folder with files.
+/// A folder with files.
 pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {
@@ -77,7 +77,7 @@ pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
 /// A PLY file with one triangle.
 pub(crate) const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
-/// Returns a PNG picture with eight bits per level, grey or in colours.
+/// A PNG picture with eight bits per level, grey or in colours.
 pub(crate) fn png([width, height]: [u32; 2], levels: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -91,7 +91,7 @@ pub(crate) fn png([width, height]: [u32; 2], levels: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the value of a constant texture.
+/// The value of a constant texture.
 pub(crate) fn constant(texture: &Texture) -> f64 {
     match texture {
         Texture::Constant(value) => *value,
@@ -99,7 +99,7 @@ pub(crate) fn constant(texture: &Texture) -> f64 {
     }
 }
 
-/// Returns the mesh of a shape.
+/// The mesh of a shape.
 pub(crate) fn mesh(shape: &Shape) -> &Arc<Triangles> {
     match &shape.geometry {
         Geometry::Mesh(mesh) => mesh,
@@ -107,12 +107,12 @@ pub(crate) fn mesh(shape: &Shape) -> &Arc<Triangles> {
     }
 }
 
-/// Returns the corners of the first triangle of a mesh.
+/// The corners of the first triangle of a mesh.
 pub(crate) fn first_triangle(mesh: &Triangles) -> [DVec3; 3] {
     mesh.corners()[0].map(|i| mesh.vertices()[i as usize])
 }
 
-/// Returns the material on the front of a material with two sides, or the material itself.
+/// The material on the front of a material with two sides, or the material itself.
 pub(crate) fn front_side(material: &Material) -> &Material {
     match material {
         Material::TwoSided(sides) => &sides[0],
@@ -120,7 +120,7 @@ pub(crate) fn front_side(material: &Material) -> &Material {
     }
 }
 
-/// Returns the reflectance of a diffuse material, which may have two sides.
+/// The reflectance of a diffuse material, which may have two sides.
 pub(crate) fn reflectance(material: &Material) -> &Texture {
     match front_side(material) {
         Material::Diffuse { reflectance } => reflectance,
@@ -128,7 +128,7 @@ pub(crate) fn reflectance(material: &Material) -> &Texture {
     }
 }
 
-/// Returns the cases of a table, each with a scene and what is expected of it: words of a message,
+/// The cases of a table, each with a scene and what is expected of it: words of a message,
 /// or numbers. `=>` separates them, on the same line or on the next one.
 pub(crate) fn cases(table: &str) -> Vec<(&str, &str)> {
     let (mut all, mut open) = (Vec::new(), None);
@@ -144,7 +144,7 @@ pub(crate) fn cases(table: &str) -> Vec<(&str, &str)> {
     all
 }
 
-/// Returns the numbers of a text.
+/// The numbers of a text.
 pub(crate) fn numbers(text: &str) -> Vec<f64> {
     let words = text.split_whitespace();
     words.map(|word| word.parse().unwrap()).collect()

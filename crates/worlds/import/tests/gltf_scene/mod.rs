@@ -16,12 +16,12 @@ use etendue_world::World;
 pub(crate) const BASE: &str =
     r#","textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,PICTURE"}]"#;
 
-/// Returns the text of a glTF file with the given nodes and other members.
+/// The text of a glTF file with the given nodes and other members.
 pub(crate) fn with(nodes: &str, more: &str) -> String {
     format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],{more}}}"#)
 }
 
-/// Returns a triangle with X to the right and Y up, and texture coordinates.
+/// A triangle with X to the right and Y up, and texture coordinates.
 fn buffer() -> Vec<u8> {
     let places = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let uvs = [[0.0_f32, 1.0], [1.0, 1.0], [0.0, 0.0]];
@@ -31,7 +31,7 @@ fn buffer() -> Vec<u8> {
     bytes
 }
 
-/// Returns a file whose mesh 0 is a triangle of one material.
+/// A file whose mesh 0 is a triangle of one material.
 pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     let material = if material.is_empty() { "{}" } else { material };
     let data = STANDARD.encode(buffer());
@@ -52,7 +52,7 @@ pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     )
 }
 
-/// Returns the text of a file, with its embedded buffer, as a binary file.
+/// The text of a file, with its embedded buffer, as a binary file.
 pub(crate) fn binary(text: &str) -> Vec<u8> {
     let uri = format!(
         r#","uri":"data:application/octet-stream;base64,{}""#,

@@ -11,7 +11,7 @@ use etendue_import::{Color, Imported, Options, import_pbrt};
 use etendue_world::{Light, Material, Shape, World};
 use std::path::Path;
 
-/// Returns a scene with the text `before` ahead of `WorldBegin`, and `inside` after it, on line 3.
+/// A scene with the text `before` ahead of `WorldBegin`, and `inside` after it, on line 3.
 pub(crate) fn scene(before: &str, inside: &str) -> String {
     format!("PixelFilter \"box\" {before}\nWorldBegin\n{inside}\n")
 }
@@ -30,31 +30,31 @@ fn read(text: &str) -> Result<Imported, Vec<String>> {
     read_in(text, folder.path(), Color::Luminance)
 }
 
-/// Returns the world of a scene that names no files.
+/// The world of a scene that names no files.
 pub(crate) fn world(inside: &str) -> World {
     read(&scene("", inside))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// Returns the world of a scene with settings only.
+/// The world of a scene with settings only.
 pub(crate) fn set_up(before: &str) -> World {
     read(&scene(before, ""))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// Returns all causes to refuse a scene without files.
+/// All causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     read(&scene("", inside)).map(|read| read.world).unwrap_err()
 }
 
-/// Returns all causes to refuse settings.
+/// All causes to refuse settings.
 pub(crate) fn unsettled(before: &str) -> Vec<String> {
     read(&scene(before, "")).map(|read| read.world).unwrap_err()
 }
 
-/// Returns all notes on a scene without files.
+/// All notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     all_notes(&read(&scene("", inside)).unwrap())
 }
@@ -67,7 +67,7 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// Returns the material of a sphere or, if the material has two equal sides, the material of one
+/// The material of a sphere or, if the material has two equal sides, the material of one
 /// side.
 pub(crate) fn material(declared: &str) -> Material {
     let world = world(&format!("{declared}\nShape \"sphere\""));

@@ -14,7 +14,7 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// Returns the intensity along a direction in world coordinates, W sr⁻¹.
+    /// The intensity along a direction in world coordinates, W sr⁻¹.
     pub(super) fn intensity(&self, along: DVec3) -> f64 {
         let local = self.to_local.transform_vector3(along);
         match &self.light {

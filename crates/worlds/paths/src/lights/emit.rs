@@ -185,7 +185,7 @@ impl Draw<'_> {
     }
 }
 
-/// Returns the target at which a photon is aimed, or `None` if the photon is not aimed. Half of the
+/// The target at which a photon is aimed, or `None` if the photon is not aimed. Half of the
 /// photons are aimed, with the same probability for each target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
@@ -193,7 +193,7 @@ pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTar
     found.and_then(|number| targets.get(number))
 }
 
-/// Returns the density of a mixture. Half of the samples have the density `plain`, and the other
+/// The density of a mixture. Half of the samples have the density `plain`, and the other
 /// half are divided equally among the targets.
 pub(crate) fn mixed(
     plain: f64,
@@ -208,7 +208,7 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// Returns the cone that the sphere subtends at a point, or all directions if the point is
+    /// The cone that the sphere subtends at a point, or all directions if the point is
     /// inside the sphere.
     fn cone(&self, from: DVec3) -> Cone {
         Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)

@@ -30,7 +30,7 @@ impl Incoming {
     }
 }
 
-/// Returns the direction and the distance from one point to another.
+/// The direction and the distance from one point to another.
 #[inline]
 pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     let between = to - from;
@@ -38,7 +38,7 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     (between / distance, distance)
 }
 
-/// Returns the radiance that the front of a shape emits in a direction from a given point. The
+/// The radiance that the front of a shape emits in a direction from a given point. The
 /// radiance is the same in all directions.
 #[inline]
 pub(super) fn emitted(emission: &Texture, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {

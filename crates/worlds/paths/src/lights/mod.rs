@@ -90,7 +90,7 @@ impl LightSampler {
         self.lights.iter().all(is_extended)
     }
 
-    /// Returns the emission of a shape that a ray along `along` hits, and the density with which
+    /// The emission of a shape that a ray along `along` hits, and the density with which
     /// [`Self::sample`] draws this direction.
     #[inline]
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {

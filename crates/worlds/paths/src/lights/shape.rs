@@ -63,7 +63,7 @@ impl ShiningShape {
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
-    /// Returns a point, its normal on the side that emits, and the radiance at this point divided
+    /// A point, its normal on the side that emits, and the radiance at this point divided
     /// by the density. The last random number chooses the side.
     pub(super) fn emit(
         &self,
@@ -79,7 +79,7 @@ impl ShiningShape {
         })
     }
 
-    /// Returns the radiance emitted in a direction.
+    /// The radiance emitted in a direction.
     #[inline]
     fn radiance(&self, point: &TexturePoint, normal: DVec3, away: DVec3) -> f64 {
         match self.is_two_sided {
@@ -88,7 +88,7 @@ impl ShiningShape {
         }
     }
 
-    /// Returns the density, per solid angle, of a point at a distance. `cosine` is the cosine of
+    /// The density, per solid angle, of a point at a distance. `cosine` is the cosine of
     /// the angle between the normal at the point and the direction to it.
     #[inline]
     fn density(&self, distance: f64, cosine: f64) -> f64 {
@@ -121,7 +121,7 @@ impl ShiningSphere {
         }
     }
 
-    /// Returns the cone that the sphere subtends at a point. Returns `None` for a point inside the
+    /// The cone that the sphere subtends at a point. Returns `None` for a point inside the
     /// sphere, because the sphere emits no light inwards.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)

@@ -34,7 +34,7 @@ impl SampledSky {
         }
     }
 
-    /// Returns the radiance from a direction, and the density of [`Self::sample`].
+    /// The radiance from a direction, and the density of [`Self::sample`].
     pub(super) fn radiance_and_density(&self, toward: DVec3) -> (f64, f64) {
         match self {
             Self::Constant(radiance) => (*radiance, 1.0 / Cone::SPHERE.solid_angle()),

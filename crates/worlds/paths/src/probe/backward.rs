@@ -54,7 +54,7 @@ impl<'a> BackwardProbe<'a> {
         Crossing { ray, weight }
     }
 
-    /// Returns lines drawn uniformly over a plane's window, each with the radiances that two
+    /// Lines drawn uniformly over a plane's window, each with the radiances that two
     /// independent paths find along it. The mean of a product of both has no part due to the noise
     /// of paths.
     #[must_use]
@@ -75,7 +75,7 @@ impl<'a> BackwardProbe<'a> {
 /// The number of the first path of [`BackwardProbe::pairs`]; other paths have smaller numbers.
 const PAIRS: u64 = 1 << 62;
 
-/// Returns the half-widths of a plane's window along x, y, u and v.
+/// The half-widths of a plane's window along x, y, u and v.
 fn half_widths(plane: &VirtualPlane) -> [f64; 4] {
     let Window { x, y, u, v } = &plane.window;
     [x, y, u, v].map(Profile::half_width)
@@ -120,7 +120,7 @@ impl PhotonSource for BackwardProbe<'_> {
     }
 }
 
-/// Returns the point of a net for a ray of a batch. A net has 2³² points, more than any batch.
+/// The point of a net for a ray of a batch. A net has 2³² points, more than any batch.
 fn point_of(ray: u64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,

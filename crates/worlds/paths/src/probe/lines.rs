@@ -22,13 +22,13 @@ pub(super) struct SurfaceLeg {
 }
 
 impl SurfaceLeg {
-    /// Returns the largest distance between the central ray and a line of the window, at a given
+    /// The largest distance between the central ray and a line of the window, at a given
     /// distance before the end of the leg.
     pub(super) fn wide(&self, distance: f64) -> f64 {
         self.position + self.slope * distance
     }
 
-    /// Returns the line with the coordinates `seen` in a plane of this leg. The line starts at the
+    /// The line with the coordinates `seen` in a plane of this leg. The line starts at the
     /// end of the leg, which is the camera or a surface, and runs back towards the light.
     pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
@@ -38,7 +38,7 @@ impl SurfaceLeg {
         self.through(geometry, point, along)
     }
 
-    /// Returns the line through a point along the direction of light.
+    /// The line through a point along the direction of light.
     pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
         let start = self.start(geometry, point, along);
         Ray {
@@ -47,7 +47,7 @@ impl SurfaceLeg {
         }
     }
 
-    /// Returns the point at which the line through a point meets the surface at the end of the leg.
+    /// The point at which the line through a point meets the surface at the end of the leg.
     /// If there are several such points, returns the point nearest to the plane at the end.
     pub(super) fn start(
         &self,
@@ -64,7 +64,7 @@ impl SurfaceLeg {
         meets(-along, nearest).or(ahead)
     }
 
-    /// Returns the point of a line in the plane at the end of the leg.
+    /// The point of a line in the plane at the end of the leg.
     fn at_end(&self, point: DVec3, along: DVec3) -> DVec3 {
         let end = &self.frame;
         let left = (end.origin - point).dot(end.d) / along.dot(end.d);
@@ -72,7 +72,7 @@ impl SurfaceLeg {
     }
 }
 
-/// Returns a line in the coordinates of a plane.
+/// A line in the coordinates of a plane.
 pub(super) fn seen_by(plane: &Frame, point: DVec3, along: DVec3) -> TwoPlane {
     let (from, way) = (plane.to_local(point), plane.vector_to_local(along));
     let (u, v) = (way.x / way.z, way.y / way.z);

@@ -76,7 +76,7 @@ const PICTURE_FREQUENCIES: usize = 24;
 const PICTURE_AZIMUTHS: usize = 40;
 
 impl<'a> Probe<'a> {
-    /// Returns the light field behind a pixel of a camera. Returns `None` if the camera is
+    /// The light field behind a pixel of a camera. Returns `None` if the camera is
     /// orthographic, or the ray hits nothing.
     #[must_use]
     pub fn new(paths: &'a Paths, camera: &Camera, question: &Question) -> Option<Self> {
@@ -142,13 +142,13 @@ impl<'a> Probe<'a> {
         Some(probe)
     }
 
-    /// Returns the same probe with one of its planes alone.
+    /// The same probe with one of its planes alone.
     #[must_use]
     pub fn at_plane(&self, index: usize) -> Self {
         self.seen_at(self.planes[index].clone())
     }
 
-    /// Returns the same probe with this plane instead of its planes.
+    /// The same probe with this plane instead of its planes.
     #[must_use]
     pub fn seen_at(&self, plane: VirtualPlane) -> Self {
         Self {
@@ -157,7 +157,7 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Returns the radiance along a ray through a plane, by one path that is traced back. The seed
+    /// The radiance along a ray through a plane, by one path that is traced back. The seed
     /// and `index` select the random numbers of the path.
     #[must_use]
     pub fn radiance(&self, plane: &VirtualPlane, ray: &TwoPlane, seed: u64, index: u64) -> f64 {
@@ -165,7 +165,7 @@ impl<'a> Probe<'a> {
         self.radiance_by(plane, ray, LightSearch::Both, &mut numbers)
     }
 
-    /// Returns the radiance along a ray through a plane, by one path with these random numbers.
+    /// The radiance along a ray through a plane, by one path with these random numbers.
     fn radiance_by(
         &self,
         plane: &VirtualPlane,
@@ -218,7 +218,7 @@ impl<'a> Probe<'a> {
         Some(self)
     }
 
-    /// Returns the regions of surfaces that the windows see, also in mirrors.
+    /// The regions of surfaces that the windows see, also in mirrors.
     fn targets(&self) -> Vec<EmissionTarget> {
         let stops = self.stops.iter().chain(&self.beyond);
         let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {

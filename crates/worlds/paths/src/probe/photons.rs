@@ -40,7 +40,7 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Returns the reason why photons do not find all light that reaches a plane. The reason
+    /// The reason why photons do not find all light that reaches a plane. The reason
     /// follows from the objects that are seen through the window of the plane.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
@@ -124,7 +124,7 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Returns how a photon continues from a hit; `None` if it is absorbed. Half of the photons
+    /// How a photon continues from a hit; `None` if it is absorbed. Half of the photons
     /// follow the material, and the other half are aimed at the regions that the windows see.
     fn onward(&self, hit: &Hit, arriving: DVec3, numbers: &mut PathNumbers<'_>) -> Option<Onward> {
         let scatter = self.probe.paths.scatter(hit);
@@ -163,7 +163,7 @@ impl<'a> PhotonProbe<'a> {
         })
     }
 
-    /// Returns the density, per solid angle, with which photons continue from a hit in a direction.
+    /// The density, per solid angle, with which photons continue from a hit in a direction.
     /// Delta components are left out.
     fn onward_density(&self, hit: &Hit, arriving: DVec3, along: DVec3) -> f64 {
         let [wi, wo] = [-arriving, along].map(|of| hit.frame.transpose() * of);
@@ -183,7 +183,7 @@ struct Onward {
     density: Option<f64>,
 }
 
-/// Returns a factor. The BSDF times the cosine to the shading normal, multiplied by this factor,
+/// A factor. The BSDF times the cosine to the shading normal, multiplied by this factor,
 /// gives flux. For flux, both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()

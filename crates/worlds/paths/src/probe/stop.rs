@@ -29,7 +29,7 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Returns the cosine of the angle between the normal and the leaving light.
+    /// The cosine of the angle between the normal and the leaving light.
     #[must_use]
     pub fn cosine(&self) -> f64 {
         self.normal.dot(self.leaving)
@@ -47,7 +47,7 @@ impl Stop {
     }
 }
 
-/// Returns the surfaces along a camera ray that continues by mirror reflection. `half` is half of
+/// The surfaces along a camera ray that continues by mirror reflection. `half` is half of
 /// the angle of the window.
 pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
@@ -83,7 +83,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     stops
 }
 
-/// Returns the surfaces beyond the surface `last` that windows see in mirrors, up to the first
+/// The surfaces beyond the surface `last` that windows see in mirrors, up to the first
 /// surface that is not a mirror.
 pub(super) fn visible(last: &Stop, beyond: Vec<Stop>) -> Vec<Stop> {
     let mut is_shown = last.reflects == Reflects::Mirror;
@@ -115,7 +115,7 @@ fn curvature(
     })
 }
 
-/// Returns the curvature between two points of a shape, one step to either side. Returns `None` if
+/// The curvature between two points of a shape, one step to either side. Returns `None` if
 /// there is no point of the shape on one of the sides.
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
@@ -130,7 +130,7 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
     Some((m - n).dot(step) / (p - q).dot(step))
 }
 
-/// Returns the normalised component of a normal perpendicular to a direction. Returns `None` if the
+/// The normalised component of a normal perpendicular to a direction. Returns `None` if the
 /// normal is parallel to the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
     let across = normal.reject_from_normalized(along);

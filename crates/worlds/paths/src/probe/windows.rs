@@ -44,7 +44,7 @@ impl LineRegion {
         Some(along.normalize())
     }
 
-    /// Returns the density of [`Self::sample`] per solid angle.
+    /// The density of [`Self::sample`] per solid angle.
     fn density(&self, from: DVec3, along: DVec3) -> f64 {
         let Some(slopes) = self.slopes(from) else {
             return 0.0;
@@ -61,7 +61,7 @@ impl LineRegion {
         squared * squared.sqrt() / area
     }
 
-    /// Returns the intervals in which u and v lie for lines through a point. For a point behind the
+    /// The intervals in which u and v lie for lines through a point. For a point behind the
     /// end of the leg, positions do not limit the slopes.
     fn slopes(&self, from: DVec3) -> Option<[[f64; 2]; 2]> {
         let from = self.frame.to_local(from);
@@ -144,7 +144,7 @@ impl<'a> WindowConnector<'a> {
         found
     }
 
-    /// Returns the reason why connections do not find all light that reaches a plane.
+    /// The reason why connections do not find all light that reaches a plane.
     pub(super) fn misses(&self, plane: usize) -> Option<&'static str> {
         self.misses[plane]
     }
@@ -329,7 +329,7 @@ impl<'a> WindowConnector<'a> {
         }
     }
 
-    /// Returns the point at which a line meets the smooth surface at the end of a leg. Returns
+    /// The point at which a line meets the smooth surface at the end of a leg. Returns
     /// `None` if the leg does not end at a smooth surface, or if windows do not see the line at
     /// this point.
     fn smooth_end(&self, number: usize, from: DVec3, along: DVec3) -> Option<Hit> {

@@ -61,7 +61,7 @@ impl From<&Material> for Scatter {
 }
 
 impl Scatter {
-    /// Returns the BSDF times |cos| of wi, and the density of [`Self::sample`] per solid angle,
+    /// The BSDF times |cos| of wi, and the density of [`Self::sample`] per solid angle,
     /// both without delta components such as mirrors.
     pub(crate) fn value_and_density(
         &self,
@@ -109,12 +109,12 @@ impl Scatter {
         }
     }
 
-    /// Returns the first of [`Self::value_and_density`].
+    /// The first of [`Self::value_and_density`].
     pub(crate) fn value(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         self.value_and_density(point, wi, wo).0
     }
 
-    /// Returns the second of [`Self::value_and_density`].
+    /// The second of [`Self::value_and_density`].
     pub(crate) fn density(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         self.value_and_density(point, wi, wo).1
     }
@@ -205,7 +205,7 @@ impl Scatter {
         })
     }
 
-    /// Returns the ratio of two squared indices: the squared index on the side of `to`, divided by
+    /// The ratio of two squared indices: the squared index on the side of `to`, divided by
     /// the squared index on the side of `from`. The ratio is 1 unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         let index = match self {
@@ -221,7 +221,7 @@ impl Scatter {
         index * index
     }
 
-    /// Returns the kind of reflection on the side of `wo`. For a mixture, returns the kind of the
+    /// The kind of reflection on the side of `wo`. For a mixture, returns the kind of the
     /// part with more weight.
     pub(crate) fn kind(&self, point: &TexturePoint, wo: DVec3) -> Reflects {
         let rough = |roughness: Option<&Roughness>| {
@@ -259,7 +259,7 @@ impl Scatter {
         }
     }
 
-    /// Returns the texture factors of both parts of a material. One part is the base, and the other
+    /// The texture factors of both parts of a material. One part is the base, and the other
     /// part is the lobe or mirror above the base. A material with a single part has only a base.
     pub(crate) fn factors(&self, point: &TexturePoint, wo: DVec3) -> [f64; 2] {
         match self {
@@ -277,7 +277,7 @@ impl Scatter {
         }
     }
 
-    /// Returns the share of the base in the light scattered from `wi` to `wo`.
+    /// The share of the base in the light scattered from `wi` to `wo`.
     pub(crate) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         match self {
             Self::TwoSided(sides) => {
@@ -326,7 +326,7 @@ impl Scatter {
         }
     }
 
-    /// Returns the share of light that hits the material. The rest passes unchanged; the other
+    /// The share of light that hits the material. The rest passes unchanged; the other
     /// methods do not describe it.
     pub(crate) fn opacity(&self, point: &TexturePoint) -> f64 {
         match self {
@@ -357,7 +357,7 @@ impl Scatter {
     }
 }
 
-/// Returns a BSDF times |cos| of wi, and its density. The BSDF describes the side of wo as its
+/// A BSDF times |cos| of wi, and its density. The BSDF describes the side of wo as its
 /// front.
 fn both(of: &impl Bsdf, wi: DVec3, wo: DVec3) -> (f64, f64) {
     let turned = to_front(wo);
@@ -371,20 +371,20 @@ fn sampled(of: &impl Bsdf, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
     Some(turned_back(bounce, wo))
 }
 
-/// Returns a sample for the side of wo, which was drawn with this side in front.
+/// A sample for the side of wo, which was drawn with this side in front.
 fn turned_back(bounce: BsdfSample, wo: DVec3) -> BsdfSample {
     let wi = to_front(wo)(bounce.wi);
     BsdfSample { wi, ..bounce }
 }
 
-/// Returns the share of the second of two mixed materials in the light that hits either of them.
+/// The share of the second of two mixed materials in the light that hits either of them.
 fn second_share(weight: &Texture, of: &[Scatter; 2], point: &TexturePoint) -> f64 {
     let share = weight.value(point).clamp(0.0, 1.0);
     let [a, b] = of.each_ref().map(|of| of.opacity(point));
     share * b / (a + share * (b - a)).max(f64::MIN_POSITIVE)
 }
 
-/// Returns the material on the side that faces a direction, and the flip to the frame of this
+/// The material on the side that faces a direction, and the flip to the frame of this
 /// side.
 #[inline]
 fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, impl Fn(DVec3) -> DVec3 + Copy) {

@@ -30,7 +30,7 @@ impl Coated {
         }
     }
 
-    /// Returns the plastic at a point.
+    /// The plastic at a point.
     pub(super) fn at(&self, point: &TexturePoint) -> Plastic<'_> {
         Plastic {
             coat: &self.coat,
@@ -40,7 +40,7 @@ impl Coated {
         }
     }
 
-    /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
+    /// The share of the base in scattered light. The share is 0 in the mirror direction of
     /// a smooth coat, whose reflection is a delta component.
     pub(super) fn base_share(&self, point: &TexturePoint, wi: DVec3, wo: DVec3) -> f64 {
         if self.coat.facets().is_none() && is_mirrored(wi, wo) {
@@ -64,7 +64,7 @@ pub enum Reflects {
     Lobe(Lobe),
 }
 
-/// Returns the microfacet distribution at a point, or `None` for a smooth surface.
+/// The microfacet distribution at a point, or `None` for a smooth surface.
 pub(super) fn facets(roughness: Option<&Roughness>, point: &TexturePoint) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
@@ -73,7 +73,7 @@ pub(super) fn facets(roughness: Option<&Roughness>, point: &TexturePoint) -> Opt
     })
 }
 
-/// Returns a rough metal at a point, or `None` for a mirror.
+/// A rough metal at a point, or `None` for a mirror.
 pub(super) fn conductor(of: &world::Conductor, point: &TexturePoint) -> Option<Conductor> {
     facets(of.roughness.as_ref(), point).map(|facets| Conductor {
         facets,
@@ -81,13 +81,13 @@ pub(super) fn conductor(of: &world::Conductor, point: &TexturePoint) -> Option<C
     })
 }
 
-/// Returns the Fresnel reflectance of a metal.
+/// The Fresnel reflectance of a metal.
 pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
     of.index
         .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k })
 }
 
-/// Returns the modified Phong BRDF at a point.
+/// The modified Phong BRDF at a point.
 pub(super) fn phong(
     [diffuse, specular, exponent]: &[Texture; 3],
     point: &TexturePoint,
@@ -101,7 +101,7 @@ pub(super) fn phong(
     }
 }
 
-/// Returns the index on the far side of an interface divided by the index on the side of `wo`. A
+/// The index on the far side of an interface divided by the index on the side of `wo`. A
 /// thin sheet has the same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
@@ -111,7 +111,7 @@ fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     }
 }
 
-/// Returns a rough interface as seen from the side of `wo`, or `None` if the interface is smooth.
+/// A rough interface as seen from the side of `wo`, or `None` if the interface is smooth.
 pub(super) fn rough_dielectric(
     of: &world::Dielectric,
     point: &TexturePoint,
@@ -122,7 +122,7 @@ pub(super) fn rough_dielectric(
     Some(RoughDielectric { facets, index })
 }
 
-/// Returns a smooth interface as seen from the side of `wo`.
+/// A smooth interface as seen from the side of `wo`.
 pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDielectric {
     SmoothDielectric {
         index: index(of, wo),
@@ -130,7 +130,7 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
     }
 }
 
-/// Returns the factor that multiplies light. The light is reflected if wi is in front, as wo is;
+/// The factor that multiplies light. The light is reflected if wi is in front, as wo is;
 /// otherwise it is transmitted.
 pub(super) fn factor(of: &world::Dielectric, point: &TexturePoint, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
@@ -140,7 +140,7 @@ pub(super) fn factor(of: &world::Dielectric, point: &TexturePoint, wi: DVec3) ->
     }
 }
 
-/// Returns a metal and a base at a point.
+/// A metal and a base at a point.
 pub(super) fn principled(of: &world::Principled, point: &TexturePoint) -> Principled {
     let roughness = of.roughness.value(point);
     let squared = roughness * roughness;
@@ -193,12 +193,12 @@ pub(super) fn is_mirrored(wi: DVec3, wo: DVec3) -> bool {
     (wi + wo).truncate().length_squared() < 1e-24
 }
 
-/// Returns the ratio of a part to the whole value, or 0 if the value is 0.
+/// The ratio of a part to the whole value, or 0 if the value is 0.
 pub(super) fn share(part: f64, value: f64) -> f64 {
     if value > 0.0 { part / value } else { 0.0 }
 }
 
-/// Returns the flip after which `wo` is in front.
+/// The flip after which `wo` is in front.
 #[inline]
 pub(super) fn to_front(wo: DVec3) -> impl Fn(DVec3) -> DVec3 + Copy {
     let side = if wo.z > 0.0 { 1.0 } else { -1.0 };

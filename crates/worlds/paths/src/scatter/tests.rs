@@ -137,7 +137,7 @@ fn directions() -> [DVec3; 3] {
         .map(|(x, y, z)| DVec3::new(x, y, z).normalize())
 }
 
-/// Returns a uniform direction over the whole sphere.
+/// A uniform direction over the whole sphere.
 fn anywhere([a, b, _]: [f64; 3]) -> DVec3 {
     let (z, (sin, cos)) = (2.0 * a - 1.0, libm::sincos(2.0 * PI * b));
     let radius = (1.0 - z * z).sqrt();

@@ -19,7 +19,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Returns the eight corners of the bounding box of the geometry.
+    /// The eight corners of the bounding box of the geometry.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [low, high] = match self {
             Self::Rectangle | Self::Disc => {
@@ -39,7 +39,7 @@ impl Form {
         (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
     }
 
-    /// Returns the first hit on a ray at distances strictly within bounds.
+    /// The first hit on a ray at distances strictly within bounds.
     #[inline]
     pub(super) fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Spot> {
         let Ray { from: start, along } = *ray;
@@ -77,7 +77,7 @@ impl Form {
         }
     }
 
-    /// Returns the point of the geometry at a hit; `place` is its position.
+    /// The point of the geometry at a hit; `place` is its position.
     #[inline]
     pub(super) fn local(&self, place: DVec3, spot: &Spot) -> Local {
         match self {
@@ -105,7 +105,7 @@ impl Form {
         }
     }
 
-    /// Returns the areas, in the world, of the pieces of the geometry: its triangles, or the
+    /// The areas, in the world, of the pieces of the geometry: its triangles, or the
     /// whole. Spheres and cylinders are scaled as described at [`etendue_world::Shape`].
     pub(crate) fn areas(&self, to_world: &DAffine3) -> Vec<f64> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
@@ -119,7 +119,7 @@ impl Form {
         vec![whole]
     }
 
-    /// Returns a point sampled uniformly by area on a piece.
+    /// A point sampled uniformly by area on a piece.
     #[inline]
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
@@ -145,7 +145,7 @@ impl Form {
     }
 }
 
-/// Returns the parameters of the two points of a ray at which the weighted squares of the
+/// The parameters of the two points of a ray at which the weighted squares of the
 /// coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
@@ -159,13 +159,13 @@ fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
 }
 
-/// Returns the texture coordinates of a point of the square.
+/// The texture coordinates of a point of the square.
 #[inline]
 pub(super) fn square_uv(place: DVec2) -> DVec2 {
     0.5 * (place + 1.0)
 }
 
-/// Returns the azimuth divided by 2π, from 0 to 1.
+/// The azimuth divided by 2π, from 0 to 1.
 fn turn(place: DVec2) -> f64 {
     let turn = libm::atan2(place.y, place.x) / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }

@@ -52,7 +52,7 @@ pub(super) enum PieceShape<'a> {
 }
 
 impl PieceShape<'_> {
-    /// Returns the kind and the numbers of a piece; `None` for a mesh.
+    /// The kind and the numbers of a piece; `None` for a mesh.
     fn numbers(self) -> Option<(PieceKind, [DVec3; 4])> {
         match self {
             Self::Triangle([a, b, c]) => Some((PieceKind::Triangle, [a, b, c, DVec3::NAN])),
@@ -95,7 +95,7 @@ impl PieceGroups {
         Some(Self { groups, level })
     }
 
-    /// Returns the first hit of a ray at a distance strictly within bounds, and the index of the
+    /// The first hit of a ray at a distance strictly within bounds, and the index of the
     /// surface.
     #[inline]
     pub(super) fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<(usize, Spot)> {
@@ -116,7 +116,7 @@ impl PieceGroups {
         Some((surface as usize, spot))
     }
 
-    /// Returns the first hit of a ray with one surface.
+    /// The first hit of a ray with one surface.
     pub(super) fn first_of(
         &self,
         surface: usize,
@@ -148,7 +148,7 @@ impl PieceGroups {
         dispatch!(self.level, simd => self.any(simd, ray, &sight, within))
     }
 
-    /// Returns the distance, the group and the lane of the first hit.
+    /// The distance, the group and the lane of the first hit.
     #[inline(always)]
     fn nearest<S: Simd>(
         &self,
@@ -205,14 +205,14 @@ impl PieceGroup {
         self.count += 1;
     }
 
-    /// Returns the corners of a triangle.
+    /// The corners of a triangle.
     #[inline]
     fn corners(&self, lane: usize) -> [DVec3; 3] {
         let number = |corner: usize, axis: usize| self.numbers[3 * corner + axis][lane];
         [0, 1, 2].map(|i| DVec3::new(number(i, 0), number(i, 1), number(i, 2)))
     }
 
-    /// Returns the distance of the first point of each piece beyond `from`, and whether there is
+    /// The distance of the first point of each piece beyond `from`, and whether there is
     /// one.
     #[inline(always)]
     fn crossings<S: Simd>(
@@ -247,7 +247,7 @@ impl PieceGroup {
         }
     }
 
-    /// Returns a point (`w` = 1) or a vector (`w` = 0) in local coordinates.
+    /// A point (`w` = 1) or a vector (`w` = 0) in local coordinates.
     #[inline(always)]
     fn local<S: Simd>(&self, simd: S, v: DVec3, w: f64) -> [PieceLanes<S>; 3] {
         [
@@ -283,7 +283,7 @@ impl PieceGroup {
         (depth / (u + v + w) * sight.per_depth, is_on)
     }
 
-    /// Returns a corner of each triangle as seen along the ray.
+    /// A corner of each triangle as seen along the ray.
     #[inline(always)]
     fn corner<S: Simd>(&self, simd: S, sight: &TriangleRay, i: usize) -> [PieceLanes<S>; 3] {
         let [x, y, z] = sight.axes();
@@ -299,7 +299,7 @@ fn side<S: Simd>(p: [PieceLanes<S>; 3], q: [PieceLanes<S>; 3]) -> PieceLanes<S> 
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// Returns the distance of the first point beyond `from` of each sphere or cylinder, and whether
+/// The distance of the first point beyond `from` of each sphere or cylinder, and whether
 /// there is one.
 #[inline(always)]
 fn quadrics<S: Simd>(

@@ -43,23 +43,23 @@ impl WorldMesh {
         });
     }
 
-    /// Returns the approximate size of the triangles, relative to the size of the mesh.
+    /// The approximate size of the triangles, relative to the size of the mesh.
     pub(super) fn fineness(&self) -> f64 {
         (self.triangles.corners().len() as f64).sqrt().recip()
     }
 
-    /// Returns whether the mesh has a tree of its own.
+    /// Whether the mesh has a tree of its own.
     pub(super) fn has_tree(&self) -> bool {
         self.tree.get().is_some()
     }
 
-    /// Returns the triangles as pieces of a surface.
+    /// The triangles as pieces of a surface.
     pub(super) fn names(&self, surface: u32) -> impl Iterator<Item = PieceName> + use<> {
         let numbers = (0..).take(self.triangles.corners().len());
         numbers.map(move |triangle| PieceName { surface, triangle })
     }
 
-    /// Returns the corners of a triangle.
+    /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         places(&self.triangles, self.triangles.corners()[triangle as usize])
     }
@@ -90,7 +90,7 @@ impl WorldMesh {
             .is_some_and(|tree| tree.is_occluded(&ray, within, |_| false))
     }
 
-    /// Returns the point of a triangle, given by its index in the mesh, whose barycentric
+    /// The point of a triangle, given by its index in the mesh, whose barycentric
     /// coordinates are `place`. The coordinates belong to the second and the third corner.
     #[inline]
     pub(super) fn local(&self, number: usize, place: DVec2) -> Local {
@@ -127,7 +127,7 @@ impl WorldMesh {
         }
     }
 
-    /// Returns the area of each triangle in the world.
+    /// The area of each triangle in the world.
     pub(super) fn areas(&self, to_world: &DAffine3) -> impl Iterator<Item = f64> {
         self.triangles.corners().iter().map(|corners| {
             let [a, b, c] = places(&self.triangles, *corners);
@@ -136,7 +136,7 @@ impl WorldMesh {
         })
     }
 
-    /// Returns a point sampled uniformly on a triangle.
+    /// A point sampled uniformly on a triangle.
     pub(super) fn sample(&self, number: usize, random: [f64; 2]) -> (DVec3, Local) {
         let place = triangle(random);
         let corners = self.triangles.corners()[number];
@@ -148,7 +148,7 @@ impl WorldMesh {
     }
 }
 
-/// Returns a ray with a direction of unit length, and the length of its former direction.
+/// A ray with a direction of unit length, and the length of its former direction.
 fn scaled(ray: &Ray) -> (Ray, f64) {
     let scale = ray.along.length();
     let along = ray.along / scale;

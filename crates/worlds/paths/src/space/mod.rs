@@ -41,7 +41,7 @@ const NEAREST: f64 = 1e-9;
 const PIECE: f64 = 200.0;
 
 impl SceneGeometry {
-    /// Returns the approximate memory that [`Self::new`] takes, in bytes.
+    /// The approximate memory that [`Self::new`] takes, in bytes.
     pub(crate) fn bytes(world: &World) -> f64 {
         let mut meshes = HashSet::new();
         let pieces = world.shapes.iter().map(|shape| match &shape.geometry {
@@ -74,7 +74,7 @@ impl SceneGeometry {
         &self.placed[shape]
     }
 
-    /// Returns the first hit of a ray, at distances within bounds.
+    /// The first hit of a ray, at distances within bounds.
     #[inline]
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
@@ -83,7 +83,7 @@ impl SceneGeometry {
         Some(self.placed[shape].hit(ray, shape, &spot))
     }
 
-    /// Returns the first hit of a ray with one shape, ignoring all others.
+    /// The first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         let placed = &self.placed[shape];
         let spot = if placed.is_whole() {
@@ -94,12 +94,12 @@ impl SceneGeometry {
         Some(placed.hit(ray, shape, &spot?))
     }
 
-    /// Returns the first hit of a ray behind another of its hits.
+    /// The first hit of a ray behind another of its hits.
     pub(crate) fn behind(&self, ray: &Ray, hit: &Hit, until: f64) -> Option<Hit> {
         self.first(ray, [hit.distance + self.nearest, until])
     }
 
-    /// Returns the share of light that passes along a ray up to a distance. `opacity` returns the
+    /// The share of light that passes along a ray up to a distance. `opacity` returns the
     /// share that a hit stops.
     #[inline]
     pub(crate) fn transmittance(

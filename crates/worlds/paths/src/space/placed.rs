@@ -76,7 +76,7 @@ impl Placed {
         around(corners.map(|corner| [self.to_world.transform_point3(corner); 2]))
     }
 
-    /// Returns whether the surface is one piece, and not the triangles of its mesh.
+    /// Whether the surface is one piece, and not the triangles of its mesh.
     pub(super) fn is_whole(&self) -> bool {
         !matches!(&self.form, Form::Mesh(mesh) if !mesh.has_tree())
     }
@@ -91,7 +91,7 @@ impl Placed {
         self.form.is_occluded(&self.seen(ray), within)
     }
 
-    /// Returns a ray in local coordinates. Its direction has another length, so distances are
+    /// A ray in local coordinates. Its direction has another length, so distances are
     /// those in the world.
     #[inline]
     fn seen(&self, ray: &Ray) -> Ray {
@@ -130,7 +130,7 @@ impl Placed {
         self.side * (self.turned * local).normalize()
     }
 
-    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal, and as
+    /// A point sampled uniformly by area on a piece of the surface, with its normal, and as
     /// textures see it.
     #[inline]
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, TexturePoint) {
@@ -144,20 +144,20 @@ impl Placed {
         (self.to_world.transform_point3(place), normal, point)
     }
 
-    /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
+    /// The areas, in the world, of the pieces of the surface: its triangles, or the whole.
     pub(crate) fn areas(&self) -> Vec<f64> {
         self.form.areas(&self.to_world)
     }
 }
 
-/// Returns the surfaces of shapes. Shapes with the same triangles share a mesh.
+/// The surfaces of shapes. Shapes with the same triangles share a mesh.
 pub(super) fn placed(shapes: &[Shape]) -> Vec<Placed> {
     let mut meshes = HashMap::new();
     let placed = shapes.iter().map(|shape| Placed::new(shape, &mut meshes));
     placed.collect()
 }
 
-/// Returns a frame whose Z is a normal, and whose X is along the component of a direction
+/// A frame whose Z is a normal, and whose X is along the component of a direction
 /// perpendicular to this normal.
 #[inline]
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {

@@ -47,7 +47,7 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    /// Returns the hit with a geometry that is not a mesh.
+    /// The hit with a geometry that is not a mesh.
     pub(super) fn at(distance: f64) -> Self {
         Self {
             distance,
@@ -57,7 +57,7 @@ impl Spot {
     }
 }
 
-/// Returns the smallest box around boxes, given by their lowest and highest corners; an empty box
+/// The smallest box around boxes, given by their lowest and highest corners; an empty box
 /// at the origin if there are none.
 pub(super) fn around(boxes: impl Iterator<Item = [DVec3; 2]>) -> [DVec3; 2] {
     boxes

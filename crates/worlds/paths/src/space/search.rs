@@ -67,7 +67,7 @@ impl SurfaceSearch {
         }))
     }
 
-    /// Returns the first hit of a ray at a distance strictly within bounds, and the index of the
+    /// The first hit of a ray at a distance strictly within bounds, and the index of the
     /// surface.
     #[inline]
     pub(super) fn first(
@@ -85,7 +85,7 @@ impl SurfaceSearch {
         }
     }
 
-    /// Returns the first hit of a ray with the triangles of one surface.
+    /// The first hit of a ray with the triangles of one surface.
     pub(super) fn first_of(&self, surface: usize, ray: &Ray, within: [f64; 2]) -> Option<Spot> {
         match self {
             Self::Groups(groups) => groups.first_of(surface, ray, within),
@@ -108,7 +108,7 @@ impl SurfaceSearch {
     }
 }
 
-/// Returns the pieces of surfaces: the triangles of meshes, and other surfaces. A mesh of several
+/// The pieces of surfaces: the triangles of meshes, and other surfaces. A mesh of several
 /// surfaces, or with small triangles, gets its own tree and is one piece.
 fn names(placed: &[Placed], bounds: &[[DVec3; 2]]) -> Vec<PieceName> {
     let size = |[low, high]: [DVec3; 2]| (high - low).length();
@@ -139,7 +139,7 @@ mod tests {
     use etendue_world::{Geometry, Shape, Triangles};
     use glam::DAffine3;
 
-    /// Returns three numbers from −1 to 1.
+    /// Three numbers from −1 to 1.
     fn numbers(index: u64, block: u32) -> DVec3 {
         let [x, y, z, _] = random::words(1, Stream::Points, index, block).map(random::unit);
         2.0 * DVec3::new(x, y, z) - 1.0

@@ -55,7 +55,7 @@ impl PieceTree {
         }
     }
 
-    /// Returns the first hit of a ray with a surface that `counts`, at a distance strictly within
+    /// The first hit of a ray with a surface that `counts`, at a distance strictly within
     /// bounds, and the index of the surface. The direction of the ray has a length of at least 1.
     /// `whole` intersects a whole surface.
     #[inline]

@@ -27,13 +27,13 @@ impl TriangleRay {
         }
     }
 
-    /// Returns the permuted axes.
+    /// The permuted axes.
     #[inline]
     pub(super) fn axes(&self) -> [usize; 3] {
         [(self.last + 1) % 3, (self.last + 2) % 3, self.last]
     }
 
-    /// Returns the distance of the hit, and two of its barycentric coordinates, which belong to the
+    /// The distance of the hit, and two of its barycentric coordinates, which belong to the
     /// second and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle
     /// intersection*). For a shared edge, both triangles compute the same number with opposite
     /// signs, so no ray passes between the triangles.

@@ -24,12 +24,12 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// Returns the number of rays with which the noise is this share, at least the present number.
+    /// The number of rays with which the noise is this share, at least the present number.
     pub(super) fn needed(self, share: f64) -> f64 {
         self.count as f64 * (self.noise / share).powi(2).max(1.0)
     }
 
-    /// Returns the number of rays to trace next, so that the noise becomes this share. The number is
+    /// The number of rays to trace next, so that the noise becomes this share. The number is
     /// 0 if the noise is small enough, and infinity if it would be too large.
     fn next(self, share: f64) -> f64 {
         if self.noise <= share {
@@ -47,7 +47,7 @@ impl Effort {
     }
 }
 
-/// Returns the shares of noise that the backward rays and the other estimate should have, if the
+/// The shares of noise that the backward rays and the other estimate should have, if the
 /// backward rays have this noise now.
 pub(super) fn targets(rays: f64) -> [f64; 2] {
     let half = TARGET * FRAC_1_SQRT_2;
@@ -68,7 +68,7 @@ pub(super) struct PlaneEffort {
 }
 
 impl PlaneEffort {
-    /// Returns the numbers of backward rays, photons and BSDF rays to trace next, where either
+    /// The numbers of backward rays, photons and BSDF rays to trace next, where either
     /// photons or BSDF rays suffice. Returns `None` if the plane needs too many.
     fn next(&self) -> Option<[f64; 3]> {
         let [own, other] = targets(self.rays.noise);
@@ -113,13 +113,13 @@ impl TracePlan {
     }
 }
 
-/// Returns the planes that get rays, with the whole numbers of these rays.
+/// The planes that get rays, with the whole numbers of these rays.
 fn counted(planes: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, u64)> {
     let some = planes.filter(|(_, n)| *n > 0.0);
     some.map(|(plane, n)| (plane, rounded(n))).collect()
 }
 
-/// Returns a number of rays, rounded up.
+/// A number of rays, rounded up.
 fn rounded(rays: f64) -> u64 {
     whole(rays.ceil()) as u64
 }

@@ -39,7 +39,7 @@ struct PlaneEstimates {
 }
 
 impl PlaneEstimates {
-    /// Returns the estimate with which the backward rays are compared.
+    /// The estimate with which the backward rays are compared.
     fn judge(&self) -> (SecondEstimate, &LightEstimate) {
         match &self.bsdf_rays {
             Some(rays)
@@ -104,7 +104,7 @@ pub(super) fn measured(
 }
 
 impl Estimator<'_> {
-    /// Returns the largest number of comparisons of a plane.
+    /// The largest number of comparisons of a plane.
     fn comparisons(&self) -> usize {
         match self.request.photons {
             Some(_) => 2,

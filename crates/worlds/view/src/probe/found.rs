@@ -44,7 +44,7 @@ impl SecondEstimate {
     }
 }
 
-/// Returns the verdict on a plane. The plane is undecided if the judge does not find all light. The
+/// The verdict on a plane. The plane is undecided if the judge does not find all light. The
 /// plane passes if neither the rays nor the judge find light.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {

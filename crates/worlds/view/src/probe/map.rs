@@ -123,7 +123,7 @@ pub fn map_bandwidths(
     Ok(BandwidthMap { folder, words })
 }
 
-/// Returns the bandwidths behind one pixel of the lattice.
+/// The bandwidths behind one pixel of the lattice.
 fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<MapPoint, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let number = (at[1] * lattice[0] + at[0]) as u64;
@@ -214,7 +214,7 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// Returns the bandwidth that the measurement should give. It is the larger of two bandwidths: the
+/// The bandwidth that the measurement should give. It is the larger of two bandwidths: the
 /// bandwidth by the criterion, and the bandwidth of the window.
 fn expected(point: &MapPoint) -> f64 {
     // This comparison is false for NaN, so NaN is returned.
@@ -225,7 +225,7 @@ fn expected(point: &MapPoint) -> f64 {
     }
 }
 
-/// Returns a comparison of measured and predicted bandwidths.
+/// A comparison of measured and predicted bandwidths.
 fn words(map: &Array2<MapPoint>, arguments: ArgumentStyle) -> String {
     let count = |outcome| map.iter().filter(|point| point.outcome == outcome).count();
     let [seen, dark, noisy, smooth, fine] = [

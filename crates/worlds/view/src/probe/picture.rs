@@ -89,7 +89,7 @@ impl PictureBandwidth {
         measured(scene, (pixel, pixels), (rays, seed), progress)
     }
 
-    /// Returns the largest bandwidth over directions, if it is above the limit that the window
+    /// The largest bandwidth over directions, if it is above the limit that the window
     /// sets and below the highest frequency.
     pub(super) fn widest(&self) -> Option<Widest<Uncertain>> {
         if self.missed.is_some() {
@@ -100,7 +100,7 @@ impl PictureBandwidth {
         is_above.then_some(widest)
     }
 
-    /// Returns the bandwidth perpendicular to the direction of the largest bandwidth, if it is
+    /// The bandwidth perpendicular to the direction of the largest bandwidth, if it is
     /// above the limit that the window sets.
     pub(super) fn across(&self) -> Option<Uncertain> {
         let widest = self.widest()?;
@@ -109,18 +109,18 @@ impl PictureBandwidth {
         (across.value > SMOOTH * own).then_some(across)
     }
 
-    /// Returns the largest bandwidth of the window alone.
+    /// The largest bandwidth of the window alone.
     pub(super) fn of_window(&self) -> f64 {
         self.window.widest.value.value
     }
 
-    /// Returns the bandwidth below which this window does not distinguish a picture from a smooth
+    /// The bandwidth below which this window does not distinguish a picture from a smooth
     /// one.
     pub(super) fn limit(&self) -> f64 {
         SMOOTH * self.of_window()
     }
 
-    /// Returns an estimate of the largest bandwidth without the blur of the window. The square of
+    /// An estimate of the largest bandwidth without the blur of the window. The square of
     /// the window's bandwidth is subtracted from the square of the measured bandwidth. The estimate
     /// is exact for a Gaussian. For a single frequency, it is too high by at most 0.84 bandwidths
     /// of the window.
@@ -130,7 +130,7 @@ impl PictureBandwidth {
         Some((value.value * value.value - own * own).sqrt())
     }
 
-    /// Returns how many shading samples per pixel a bandwidth requires along a direction: two for
+    /// How many shading samples per pixel a bandwidth requires along a direction: two for
     /// each cycle.
     pub(super) fn samples(&self, bandwidth: f64) -> f64 {
         2.0 * bandwidth * self.pixel_slope
@@ -144,12 +144,12 @@ impl PictureBandwidth {
         }
     }
 
-    /// Returns the bandwidth of all power; `None` without light.
+    /// The bandwidth of all power; `None` without light.
     fn whole(&self) -> Option<DirectionalBandwidth> {
         DirectionalBandwidth::new(&self.pictures).ok()?
     }
 
-    /// Returns the power of noise as a share of all power; `None` without light.
+    /// The power of noise as a share of all power; `None` without light.
     pub(super) fn noise_share(&self) -> Option<f64> {
         let whole = self.whole()?;
         Some(whole.noise / whole.power.value)
@@ -160,7 +160,7 @@ impl PictureBandwidth {
         widest.is_some_and(|it| it.value.value > CLEAR * self.window.at(it.azimuth))
     }
 
-    /// Returns the result as JSON.
+    /// The result as JSON.
     pub(super) fn tree(&self) -> Value {
         let pair = |of: Uncertain| [of.value, of.error];
         let each = |of: &Option<DirectionalBandwidth>| of.as_ref().map(|of| of.along.clone());
@@ -263,7 +263,7 @@ fn measured(
     }))
 }
 
-/// Returns the power of the picture minus its mean at all frequencies. By Parseval's theorem it is
+/// The power of the picture minus its mean at all frequencies. By Parseval's theorem it is
 /// the integral of the square of the windowed picture.
 fn whole_variation(
     rays: &BackwardProbe<'_>,
@@ -291,7 +291,7 @@ fn whole_variation(
     }
 }
 
-/// Returns the share of the whole variation that the measured power misses, if this share is large
+/// The share of the whole variation that the measured power misses, if this share is large
 /// and not due to noise. Below the noise of the measured power, its lowest frequencies may hide the
 /// whole variation.
 fn missed(whole: Uncertain, measured: Option<Uncertain>, noise: f64) -> Option<f64> {

@@ -21,7 +21,7 @@ pub(super) const RESOLUTION: f64 = 0.1;
 /// width of the window.
 pub(super) const FREQUENCIES: usize = 12;
 
-/// Returns the number of rays of each batch.
+/// The number of rays of each batch.
 pub(super) fn budget(count: u64, seed: u64) -> Budget {
     Budget {
         each: count.div_ceil(u64::from(BATCHES)),
@@ -29,7 +29,7 @@ pub(super) fn budget(count: u64, seed: u64) -> Budget {
     }
 }
 
-/// Returns the seed of rays that are traced for one plane alone.
+/// The seed of rays that are traced for one plane alone.
 pub(super) fn seed_at(seed: u64, plane: usize) -> u64 {
     seed ^ ((plane as u64 + 1) << 48)
 }
@@ -76,7 +76,7 @@ impl ProbeRequest {
     /// Default seed.
     pub const SEED: u64 = 1;
 
-    /// Returns a probe of the light seen by the first camera of a scene.
+    /// A probe of the light seen by the first camera of a scene.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -94,12 +94,12 @@ impl ProbeRequest {
         }
     }
 
-    /// Returns the number of photons with which a probe begins.
+    /// The number of photons with which a probe begins.
     pub(super) fn first_photons(&self) -> u64 {
         self.photons.unwrap_or(Self::FIRST_PHOTONS)
     }
 
-    /// Returns the first number of BSDF rays of a plane. BSDF rays have more noise than backward
+    /// The first number of BSDF rays of a plane. BSDF rays have more noise than backward
     /// rays, so a fixed number is at least four times as large.
     pub(super) fn first_bsdf_rays(&self) -> u64 {
         match self.photons {
@@ -136,7 +136,7 @@ impl<'a> ProbedScene<'a> {
         name.to_string_lossy().into_owned()
     }
 
-    /// Returns the settings that a result depends on, for its index.
+    /// The settings that a result depends on, for its index.
     pub(super) fn made_from(&self) -> Value {
         let request = self.request;
         world_source::made_from(&request.source, &self.imported, &self.camera, request.seed)

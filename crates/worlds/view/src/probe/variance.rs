@@ -29,7 +29,7 @@ impl RayRadiance for ProbeRadiance<'_> {
     }
 }
 
-/// Returns the variances at each plane. A plane is left out if it is dark, or if the radiance is the
+/// The variances at each plane. A plane is left out if it is dark, or if the radiance is the
 /// same over its whole window.
 pub(super) fn studied(
     request: &ProbeRequest,

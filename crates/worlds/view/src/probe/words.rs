@@ -20,12 +20,12 @@ use serde_json::{Value, json as tree_of};
 /// If noise is more than this share of a spectrum, the noise is underestimated.
 const NOISY: f64 = 0.3;
 
-/// Returns the angle of the central ray to the normal of a surface, radians.
+/// The angle of the central ray to the normal of a surface, radians.
 fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// Returns the paper's criterion for light that leaves a surface (Durand et al. 2005, Eq. 20,
+/// The paper's criterion for light that leaves a surface (Durand et al. 2005, Eq. 20,
 /// corrected), in cycles per radian at the camera. Returns `None` if the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
@@ -97,7 +97,7 @@ fn word(reflects: Reflects) -> String {
     }
 }
 
-/// Returns lines on the surfaces, the planes, and the sampling density that the picture needs.
+/// Lines on the surfaces, the planes, and the sampling density that the picture needs.
 pub(super) fn lines(
     request: &ProbeRequest,
     world: &World,
@@ -159,7 +159,7 @@ pub(super) fn lines(
     lines
 }
 
-/// Returns the next power of two, as an argument is written.
+/// The next power of two, as an argument is written.
 fn power_of_two(count: f64, arguments: ArgumentStyle) -> String {
     let exponent = libm::log2(count).ceil().min(63.0);
     match arguments {
@@ -168,7 +168,7 @@ fn power_of_two(count: f64, arguments: ArgumentStyle) -> String {
     }
 }
 
-/// Returns a table with a header.
+/// A table with a header.
 fn table(head: [&str; 6], rows: impl Iterator<Item = [String; 6]>) -> Vec<String> {
     let head = head.map(str::to_owned);
     aligned(std::iter::once(head).chain(rows).map(Vec::from).collect())
@@ -239,7 +239,7 @@ fn planes(found: &[&Found]) -> Vec<String> {
     table(head, rows)
 }
 
-/// Returns lines on the bandwidths of the picture, and on the distances between shading samples
+/// Lines on the bandwidths of the picture, and on the distances between shading samples
 /// that these bandwidths require.
 fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<String> {
     let line = |what: &str, cycles: String, bandwidth: f64| {
@@ -292,7 +292,7 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     lines
 }
 
-/// Returns what is known of a picture whose bandwidth is not measured.
+/// What is known of a picture whose bandwidth is not measured.
 fn unresolved(picture: &PictureBandwidth, arguments: ArgumentStyle) -> String {
     let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
     if let Some(share) = picture.missed {
@@ -320,7 +320,7 @@ fn unresolved(picture: &PictureBandwidth, arguments: ArgumentStyle) -> String {
     }
 }
 
-/// Returns a row for each plane with the entries of the covariance along x, where x lies in the
+/// A row for each plane with the entries of the covariance along x, where x lies in the
 /// plane of incidence. The camera has a second row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);

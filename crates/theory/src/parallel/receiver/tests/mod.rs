@@ -9,7 +9,7 @@ use crate::testing::{aperture, disc, opaque, square};
 use etendue_field::{Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
 impl Receiver<'_> {
-    /// Returns the irradiance at a point of the receiver, W m⁻².
+    /// The irradiance at a point of the receiver, W m⁻².
     fn irradiance(&self, x: f64, y: f64) -> f64 {
         if self.light.shape.is_some() {
             return self.cell([x, y], [0.0; 2]);
@@ -79,7 +79,7 @@ impl TestReceiver {
         )
     }
 
-    /// Returns the fraction of light that passes all masks on the way from point (a, b) of the
+    /// The fraction of light that passes all masks on the way from point (a, b) of the
     /// light to point (x, y) of the receiver.
     fn passes(&self, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
         let masks = self.masks.iter();
@@ -92,7 +92,7 @@ impl TestReceiver {
             .product()
     }
 
-    /// Returns L cosⁿθ · cos²θ / r², the irradiance at (x, y) per square metre of the light at (a,
+    /// L cosⁿθ · cos²θ / r², the irradiance at (x, y) per square metre of the light at (a,
     /// b).
     fn added(&self, at: [f64; 2], point: [f64; 2]) -> f64 {
         let Light::Area {

@@ -92,7 +92,7 @@ const FREQUENCIES: [[f64; 4]; 5] = [
     [-2.0, 1.5, 1.0, 0.7],
 ];
 
-/// Returns the largest deviation of the receiver's spectrum from the spectrum of sampled rays,
+/// The largest deviation of the receiver's spectrum from the spectrum of sampled rays,
 /// divided by the largest value.
 fn deviation(receiver: &Receiver<'_>, drawn: &[Complex]) -> f64 {
     let table = receiver.table(&hann(), 128);

@@ -15,7 +15,7 @@ const GOOD: f64 = 1e-6;
 /// Relative error allowed for nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
-/// Returns slices whose values are computed by a function of the frequency.
+/// Slices whose values are computed by a function of the frequency.
 fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     let mut slices = Slices::zeros(*grid);
     for ((k, m, n), to) in slices.half.indexed_iter_mut() {
@@ -24,7 +24,7 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over
+/// The spectrum at distance d of a projector's field, computed by a Gauss rule over
 /// slopes. On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis
 /// positions are farther from the projector (docs/theory.md, section 2). If `exact` is false, the
 /// factor √(1 + u² + v²) is omitted.
@@ -156,7 +156,7 @@ fn shadows_are_as_good_as_stated() {
     }
 }
 
-/// Returns the error of a mask's shadow relative to its closed form, and its estimated error.
+/// The error of a mask's shadow relative to its closed form, and its estimated error.
 fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let grid = grid(2, [0.3, 0.3]);
@@ -288,7 +288,7 @@ fn behind(mask: &Mask) -> PathSystem {
     system
 }
 
-/// Returns the sum of the derivatives with respect to some parameters of a path.
+/// The sum of the derivatives with respect to some parameters of a path.
 fn by_rays(system: &PathSystem, names: &[&str]) -> Slices {
     let view = view(system, &after(system, 1.5));
     let mut parameters = view.parameters();

@@ -45,7 +45,7 @@ mod order;
 mod read_off;
 mod surfaces;
 
-/// Returns a window with equal widths along both axes.
+/// A window with equal widths along both axes.
 fn window(position: Profile, slope: Profile) -> Window {
     crate::testing::window(position, slope)
 }
@@ -94,7 +94,7 @@ fn visit(system: &mut PathSystem, surface: PathSurface) {
     system.visited += 1;
 }
 
-/// Returns the plane at the end of the last leg.
+/// The plane at the end of the last leg.
 fn after(system: &PathSystem, distance: f64) -> Plane {
     let last = system
         .hits()

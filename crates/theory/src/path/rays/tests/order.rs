@@ -3,7 +3,7 @@
 
 use super::*;
 
-/// Returns ‖linear − exact‖/‖exact‖ at a size e, where windows and light are e times as wide, and
+/// ‖linear − exact‖/‖exact‖ at a size e, where windows and light are e times as wide, and
 /// frequencies are 1/e times as high.
 fn error(system: &PathSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
@@ -18,7 +18,7 @@ fn error(system: &PathSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Ed
     first.slices.relative_difference(&right.slices)
 }
 
-/// Returns the power of e with which the error falls.
+/// The power of e with which the error falls.
 fn order(system: &PathSystem, plane: &Plane, widths: [f64; 2]) -> f64 {
     let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");

@@ -4,12 +4,12 @@ use super::*;
 use crate::path::rays::central::Incidence;
 use etendue_field::Side;
 
-/// Returns the coordinates at the plane of a ray that leaves the light.
+/// The coordinates at the plane of a ray that leaves the light.
 fn lands(system: &PathSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
     Some(plane.coordinates(&system.follow(ray)?)?.0)
 }
 
-/// Returns the derivative ∂z'/∂z of a ray's coordinates at the plane with respect to its
+/// The derivative ∂z'/∂z of a ray's coordinates at the plane with respect to its
 /// coordinates at the light, by central differences of traced rays.
 fn traced(system: &PathSystem, plane: &Plane) -> [[f64; 4]; 4] {
     const STEP: f64 = 1e-5;
@@ -28,7 +28,7 @@ fn traced(system: &PathSystem, plane: &Plane) -> [[f64; 4]; 4] {
     rows
 }
 
-/// Returns the largest difference between the matrix and offset of the chain's map and the matrix
+/// The largest difference between the matrix and offset of the chain's map and the matrix
 /// and offset of traced rays.
 fn off(system: &PathSystem, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
@@ -44,12 +44,12 @@ fn off(system: &PathSystem, plane: &Plane, print: Edition) -> f64 {
 /// by the step.
 const CLOSE: f64 = 1e-8;
 
-/// Returns a point light with a narrow picture; only its geometry matters here.
+/// A point light with a narrow picture; only its geometry matters here.
 fn light() -> Light {
     projector([0.1, 0.1])
 }
 
-/// Returns the frame of leg `i`, at its start.
+/// The frame of leg `i`, at its start.
 fn leg(system: &PathSystem) -> Frame {
     system
         .hits()
@@ -296,7 +296,8 @@ fn steps_read_like_a_figure() {
     );
 }
 
-/// Tests that the `defect` of a chain detects a relative error of 10⁻⁵ in any entry of any map.
+/// Tests that the `defect` of a chain detects a relative error of 10⁻⁴ in its factor and in each
+/// phase, and a wrong sign of the largest entry of each row.
 #[test]
 fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));

@@ -29,7 +29,7 @@ fn exact(system: &PathSystem, plane: &Plane, window: &Window, grid: &SliceGrid) 
     )
 }
 
-/// Returns ‖first order − exact‖/‖exact‖ of the two predictions of a system.
+/// ‖first order − exact‖/‖exact‖ of the two predictions of a system.
 fn linearised(
     system: &PathSystem,
     plane: &Plane,
@@ -104,7 +104,7 @@ fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectan
     PathSystem::new(light, vec![PathSurface::new("surface", patch, interaction)])
 }
 
-/// Returns a plane perpendicular to the mirrored central ray, at the distance `after` from the
+/// A plane perpendicular to the mirrored central ray, at the distance `after` from the
 /// surface.
 fn across(theta0: f64, after: f64) -> Plane {
     let n = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
@@ -125,7 +125,7 @@ fn across(theta0: f64, after: f64) -> Plane {
     }
 }
 
-/// Returns a plane on the surface, for light leaving it.
+/// A plane on the surface, for light leaving it.
 fn on(system: &PathSystem, theta0: f64, orientation: Orientation) -> Plane {
     let t = DVec3::new(-libm::cos(theta0), 0.0, -libm::sin(theta0));
     let n = system.surfaces[0].patch.frame.d;
@@ -243,7 +243,7 @@ fn chain_is_the_product_of_operators() {
     }
 }
 
-/// Returns ‖first order − exact‖/‖exact‖ for neighbourhoods of several sizes e.
+/// ‖first order − exact‖/‖exact‖ for neighbourhoods of several sizes e.
 fn errors(
     theta0: f64,
     k: f64,
@@ -271,7 +271,7 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe whose width 1/√n is proportional to the size e of the neighbourhood.
+/// A Phong lobe whose width 1/√n is proportional to the size e of the neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -377,7 +377,7 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// Returns the irradiance ∫ L cos⁺ dω of a spherical Gaussian on a surface whose normal is at the
+/// The irradiance ∫ L cos⁺ dω of a spherical Gaussian on a surface whose normal is at the
 /// angle γ from the Gaussian's centre. The convolution with the clamped cosine is computed as a
 /// product of spherical-harmonic coefficients (Ramamoorthi and Hanrahan 2001; in 2D, section 6.1
 /// of Durand et al. 2005).
