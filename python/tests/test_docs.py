@@ -29,6 +29,22 @@ def test_the_page_of_the_book(monkeypatch):
             assert re.fullmatch(pattern, said.strip()), said
 
 
+def test_the_page_of_theories(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/own-theory.md").read_text()
+    scene, theory = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("ron", "python"))
+    (tmp_path / "lamp.ron").write_text(scene)
+    measure, compare, *_ = re.findall(r"^    etendue (.*)$", page, re.MULTILINE)
+
+    def code(arguments):
+        return subprocess.run([sys.executable, "-m", "etendue", *arguments.split()], check=False).returncode
+
+    assert code(measure) == 0
+    for script, expected in [(theory, 0), (theory.replace("x[:, None] - u", "x[:, None] + u"), 1)]:
+        exec(script, {})
+        assert code(f"{compare} --force") == expected
+
+
 def test_the_notebook(tmp_path):
     nbclient = pytest.importorskip("nbclient")
     import nbformat

@@ -6,16 +6,21 @@ use crate::conclude::Ending;
 use crate::print::say;
 use crate::progress::{self, Terminal};
 use crate::threads::on_threads;
-use etendue_pipeline::read_case;
+use etendue_pipeline::{PredictionSource, read_case};
 use etendue_report::{OutputOptions, Stopwatch, plan};
 use etendue_store::stored::check_earlier;
 use etendue_store::{ArgumentStyle, Failure, Results, SUMMARY};
+use std::path::Path;
 
 /// Runs `etendue compare`; returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     let stage = progress::stage("reading", args.work.quiet);
-    let (case, inputs) = read_case(&args.measured, &args.predicted)?;
+    let predicted = match (&args.theory, &args.predicted) {
+        (Some(file), _) => PredictionSource::File(file),
+        (None, folder) => PredictionSource::Folder(folder.as_deref().unwrap_or(Path::new(""))),
+    };
+    let (case, inputs) = read_case(&args.measured, predicted)?;
     stage.finish_and_clear();
     watch.lap("read");
     let plan = plan(

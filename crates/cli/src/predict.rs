@@ -7,7 +7,10 @@ use crate::threads::on_threads;
 use crate::warnings;
 use etendue_pipeline::{Leader, load};
 use etendue_store::stored::Index;
-use etendue_store::{Failure, PREDICTION, predictions};
+use etendue_store::{Failure, PREDICTION, predictions, theory};
+
+/// The file of predictions for other programs.
+const THEORY: &str = "predictions.npz";
 
 /// Runs `etendue predict`; returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
@@ -24,7 +27,8 @@ pub(crate) fn predict_with(
     let (results, content) = on_threads(&args.work.threads, || {
         warnings::tell(scene, args.work.quiet);
         run.check_limits()?;
-        let files = predictions::names(&scene.planes);
+        let mut files = predictions::names(&scene.planes);
+        files.extend(args.npz.then(|| THEORY.to_owned()));
         let mut results = load::stage(
             &args.out.folder,
             PREDICTION,
@@ -35,6 +39,9 @@ pub(crate) fn predict_with(
         )?;
         let predictions = run.predictions(workers, &Terminal::new(args.work.quiet))?;
         let content = predictions::write(&mut results, scene, run.method, &predictions)?;
+        if args.npz {
+            results.write(THEORY, &theory::bytes(&scene.planes, &predictions)?)?;
+        }
         Ok((results, content))
     })?;
     let finished = Index::new(scene, content).finish(results)?;

@@ -16,6 +16,7 @@ mod first_scenes;
 mod interruption;
 mod limits;
 mod newcomer;
+mod own_theory;
 mod ownership;
 mod ray_light;
 mod rays;

@@ -80,7 +80,8 @@ impl Prediction {
     }
 
     /// The combined ‖error‖/‖slices‖ of all kinds of error.
-    pub(crate) fn error(&self) -> Option<f64> {
+    #[must_use]
+    pub fn error(&self) -> Option<f64> {
         both(
             both(self.quadrature_error, self.rule_error),
             self.mesh_error,

@@ -1,7 +1,8 @@
 //! Slices of a spectrum.
 
-use crate::{Complex, SliceGrid};
-use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
+use crate::{Complex, FrequencyAxis, SliceGrid, cis};
+use ndarray::{Array2, Array3, ArrayView1, ArrayView2, ArrayView3, Axis};
+use std::f64::consts::TAU;
 
 /// The slices S_φ(ρ, ν) = ℓ̂(ρ cos φ, ρ sin φ, ν cos φ, ν sin φ) of the spectrum of a windowed light field.
 ///
@@ -50,6 +51,35 @@ impl Slices {
     #[must_use]
     pub fn full(&self) -> Array3<Complex> {
         unfold(&self.grid, self.half.view(), |s| s.conj())
+    }
+
+    /// The windowed light field over the position and the slope along an azimuth, integrated over
+    /// the other position and slope, in `cells` × `cells` cells that fill ± `half_widths`. By the
+    /// Fourier slice theorem, its spectrum is the slice at that azimuth. It contains no frequencies
+    /// beyond the grid.
+    #[must_use]
+    pub fn light_field(&self, azimuth: usize, cells: usize, half_widths: [f64; 2]) -> Array2<f64> {
+        let SliceGrid { rho, nu, .. } = &self.grid;
+        let full = self.full();
+        let slice = full.index_axis(Axis(0), azimuth);
+        // The factors e^(2πi Ω z) dΩ of the transform, [cell, frequency].
+        let waves = |axis: &FrequencyAxis, half: f64| {
+            let values = axis.values();
+            Array2::from_shape_fn((cells, values.len()), |(cell, i)| {
+                let z = half * ((2 * cell + 1) as f64 / cells as f64 - 1.0);
+                cis(TAU * values[i] * z) * axis.spacing
+            })
+        };
+        let [x, u] = [waves(rho, half_widths[0]), waves(nu, half_widths[1])];
+        // The sum is written out, because matrix products of the array library differ in their
+        // bits between processors.
+        let sum = |a: ArrayView1<'_, Complex>, b: ArrayView1<'_, Complex>| {
+            let terms = a.iter().zip(b).map(|(a, b)| a * b);
+            terms.fold(Complex::ZERO, |sum, term| sum + term)
+        };
+        let over_x =
+            Array2::from_shape_fn((cells, nu.count()), |(i, k)| sum(x.row(i), slice.column(k)));
+        Array2::from_shape_fn((cells, cells), |(i, j)| sum(over_x.row(i), u.row(j)).re)
     }
 
     /// |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.

@@ -6,7 +6,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::batches::{self, Held};
 use etendue_store::stored::{Index, Stored};
-use etendue_store::{Failure, MEASUREMENT, PREDICTION, predictions};
+use etendue_store::{Failure, MEASUREMENT, PREDICTION, predictions, theory};
 use serde_json::json;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,18 +14,26 @@ use std::path::{Path, PathBuf};
 /// The minimum number of batches. Errors are computed from batches; a scene has the same minimum.
 const LEAST_BATCHES: usize = 32;
 
+/// Where predictions come from.
+#[derive(Clone, Copy, Debug)]
+pub enum PredictionSource<'a> {
+    /// A folder written by `etendue predict`.
+    Folder(&'a Path),
+    /// A file of a program of the user ([`theory`]).
+    File(&'a Path),
+}
+
 /// Reads the measurement and the predictions, and checks that they belong to the same scene.
 /// Returns the scene, its measurement and its predictions, and the paths of all files that were
 /// read.
 pub fn read_case(
     measured: &[PathBuf],
-    predicted: &Path,
+    predicted: PredictionSource<'_>,
 ) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = measured
         .iter()
         .map(|folder| Stored::read(folder, MEASUREMENT))
         .collect::<Result<Vec<Stored<Held>>, _>>()?;
-    let predicted = Stored::read(predicted, PREDICTION)?;
     let first = &shards[0];
     let experiment = |index: &Index<Held>| {
         let Index { scene, content, .. } = index;
@@ -36,22 +44,29 @@ pub fn read_case(
         first.check_scene(shard, true)?;
         first.check_same(shard, &experiment(&first.index), &experiment(&shard.index))?;
     }
-    first.check_scene(&predicted, false)?;
     shards[1..].iter().try_for_each(Stored::check_inputs)?;
-    predicted.check_inputs()?;
     let scene = first.scene()?;
     let measurement = merged(&shards, &scene)?;
     let method = first.index.content.method;
-    let inputs = shards
-        .iter()
-        .flat_map(Stored::paths)
-        .chain(predicted.paths())
-        .collect();
+    let mut inputs: Vec<PathBuf> = shards.iter().flat_map(Stored::paths).collect();
     let theories = Applicability::of_planes(&scene);
-    let classes: Vec<_> = theories.iter().map(Applicability::class).collect();
+    let predictions = match predicted {
+        PredictionSource::Folder(folder) => {
+            let predicted = Stored::read(folder, PREDICTION)?;
+            first.check_scene(&predicted, false)?;
+            predicted.check_inputs()?;
+            inputs.extend(predicted.paths());
+            let classes: Vec<_> = theories.iter().map(Applicability::class).collect();
+            predictions::read(&predicted, &scene, &classes, method)?
+        }
+        PredictionSource::File(file) => {
+            inputs.push(file.to_owned());
+            theory::read(file, &scene.planes)?
+        }
+    };
     let case = MeasuredScene {
         method,
-        predictions: predictions::read(&predicted, &scene, &classes, method)?,
+        predictions,
         theories,
         measurement,
         scene,

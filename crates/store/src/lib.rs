@@ -30,6 +30,7 @@ pub mod predictions;
 mod results;
 pub mod sealed;
 pub mod stored;
+pub mod theory;
 pub mod unfinished;
 mod version;
 

@@ -110,14 +110,8 @@ impl Npz {
         S: Data<Elem = A>,
         D: Dimension,
     {
-        let options = SimpleFileOptions::default()
-            .compression_method(CompressionMethod::Stored)
-            .large_file(array.len().saturating_mul(size_of::<A>()) >= MAX_SMALL_FILE);
-        self.0
-            .start_file(format!("{name}.npy"), options)
-            .map_err(io::Error::from)
-            .and_then(|()| write_npy(&mut self.0, array))
-            .map_err(|e| Failure::cannot_run(format!("array {name}: {e}")))?;
+        let bytes = array.len().saturating_mul(size_of::<A>());
+        self.entry(name, bytes, &mut |file| write_npy(file, array))?;
         Ok(self)
     }
 
@@ -125,6 +119,37 @@ impl Npz {
     pub fn add_half_axes(self, grid: &SliceGrid) -> Result<Self, Failure> {
         let mut axes = half_axes(grid).into_iter();
         axes.try_fold(self, |npz, (name, values)| npz.add(name, &values))
+    }
+
+    /// Writes an entry of about `bytes` bytes.
+    fn entry(
+        &mut self,
+        name: &str,
+        bytes: usize,
+        write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .large_file(bytes >= MAX_SMALL_FILE);
+        self.0
+            .start_file(format!("{name}.npy"), options)
+            .map_err(io::Error::from)
+            .and_then(|()| write(&mut self.0))
+            .map_err(|e| Failure::cannot_run(format!("array {name}: {e}")))
+    }
+
+    /// Adds an array of texts by its name, as NumPy stores them: `<U` and the largest number of
+    /// characters, each in four bytes.
+    pub fn add_texts(mut self, name: &str, texts: &[String]) -> Result<Self, Failure> {
+        let width = texts.iter().map(|text| text.chars().count()).max();
+        let width = width.unwrap_or(0).max(1);
+        let mut bytes = NpyHeader::new(&format!("<U{width}"), &[texts.len() as u64]).bytes();
+        for text in texts {
+            let characters = text.chars().map(u32::from).chain(std::iter::repeat(0));
+            bytes.extend(characters.take(width).flat_map(u32::to_le_bytes));
+        }
+        self.entry(name, bytes.len(), &mut |file| file.write_all(&bytes))?;
+        Ok(self)
     }
 
     /// The bytes of the file.
@@ -138,7 +163,7 @@ impl Npz {
 const MAX_SMALL_FILE: usize = 1 << 31;
 
 /// The axes of arrays [azimuth, ρ ≥ 0, ν].
-fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
+pub(super) fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
     let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
     [
         ("azimuth", azimuths(grid)),
@@ -161,6 +186,9 @@ impl fmt::Debug for NpzFile {
             .finish_non_exhaustive()
     }
 }
+
+/// The fault of an array whose header cannot be read.
+const NO_ARRAY: &str = "its header does not describe an array of numbers";
 
 /// The largest number of bytes of an NPY file before its data.
 const HEADER: usize = 1 << 16;
@@ -233,7 +261,7 @@ impl NpzFile {
     ) -> Result<(NpyHeader, Vec<A>), Failure> {
         let bytes = self.entry(name, bytes)?;
         let Some((header, start)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, "its header does not describe an array of numbers"));
+            return Err(self.fault(name, NO_ARRAY));
         };
         if header.descr != A::DESCR {
             let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
@@ -260,6 +288,47 @@ impl NpzFile {
             return Err(self.fault(name, "the array holds numbers that are not finite"));
         }
         Ok((header, numbers))
+    }
+
+    /// The shape of an array.
+    pub fn shape(&mut self, name: &str) -> Result<Vec<u64>, Failure> {
+        let bytes = self.entry(name, 0)?;
+        let Some((header, _)) = NpyHeader::read(&bytes) else {
+            return Err(self.fault(name, NO_ARRAY));
+        };
+        Ok(header.shape)
+    }
+
+    /// A list of texts.
+    pub fn texts(&mut self, name: &str) -> Result<Vec<String>, Failure> {
+        let bytes = self.entry(name, self.length)?;
+        let Some((header, start)) = NpyHeader::read(&bytes) else {
+            return Err(self.fault(name, NO_ARRAY));
+        };
+        let width = header.descr.strip_prefix("<U");
+        let width = width.and_then(|width| width.parse::<usize>().ok());
+        let (Some(width @ 1..), [count]) = (width, &header.shape[..]) else {
+            return Err(self.fault(name, "must be a list of texts (dtype str)"));
+        };
+        let texts = bytes[start..].chunks_exact(width.saturating_mul(4));
+        let text = |of: &[u8]| -> Option<String> {
+            let codes = of.chunks_exact(4).map(|code| code.try_into().ok());
+            let codes = codes.map(|code| Some(u32::from_le_bytes(code?)));
+            let codes = codes.take_while(|code| *code != Some(0));
+            codes.map(|code| char::from_u32(code?)).collect()
+        };
+        let texts: Option<Vec<String>> = texts.map(text).collect();
+        let texts = texts.filter(|texts| texts.len() as u64 == *count);
+        texts.ok_or_else(|| self.fault(name, "is damaged"))
+    }
+
+    /// The names of all arrays, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let names = self.archive.file_names();
+        let names = names.map(|name| name.strip_suffix(".npy").unwrap_or(name).to_owned());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        names
     }
 
     /// Checks whether the file has an array of this name.

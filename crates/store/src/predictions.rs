@@ -147,7 +147,7 @@ fn stored(
 }
 
 /// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
-fn stacked<'a>(
+pub(super) fn stacked<'a>(
     grid: &SliceGrid,
     all: impl IntoIterator<Item = &'a Slices, IntoIter: ExactSizeIterator>,
 ) -> Array4<Complex> {

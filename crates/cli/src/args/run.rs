@@ -147,6 +147,10 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,
 
+    /// Also write the predictions as one file, predictions.npz, as `compare --theory` reads it
+    #[arg(long)]
+    pub(crate) npz: bool,
+
     /// Photons, seed and method of the measurement. At planes without a theory, the other tracer
     /// takes the place of the prediction, with the same number of photons
     #[command(flatten)]
@@ -160,6 +164,7 @@ pub(crate) struct PredictArgs {
 #[command(after_help = "Examples:
   etendue compare --measured out/all --predicted out/predicted --out out/fig9b
   etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
+  etendue compare --measured out/all --theory mine.npz --out out/mine
 
 Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers only \
 the given batches.")]
@@ -169,8 +174,12 @@ pub(crate) struct CompareArgs {
     pub(crate) measured: Vec<PathBuf>,
 
     /// Folder written by `etendue predict`
-    #[arg(long, value_name = "DIR")]
-    pub(crate) predicted: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "theory")]
+    pub(crate) predicted: Option<PathBuf>,
+
+    /// File of another program's predictions (.npz), in place of --predicted
+    #[arg(long, value_name = "FILE", conflicts_with = "predicted")]
+    pub(crate) theory: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,

@@ -1,9 +1,8 @@
 //! Computes the light field over (y, v) from its spectrum.
 
 use etendue_compare::PlaneComparison;
-use etendue_field::{Complex, FrequencyAxis, SliceGrid, Slices, cis};
-use ndarray::{Array2, ArrayView1};
-use std::f64::consts::TAU;
+use etendue_field::Slices;
+use ndarray::Array2;
 
 /// Checks whether the light in (y, v) differs from the light in (x, u). The function compares the
 /// slices at azimuths 0 and 90°.
@@ -17,42 +16,19 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
 }
 
-/// The light field over (y, v) in 64 × 64 cells that fill ± `half_widths`. The field is
-/// multiplied by the window and integrated over x and u. Within the range of the frequencies, its
-/// spectrum is the slice at azimuth 90°. Returns `None` if there is no slice at azimuth 90°.
+/// The light field over (y, v) in 64 × 64 cells that fill ± `half_widths`. Returns `None` if there
+/// is no slice at azimuth 90°.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
-    const CELLS: usize = 64;
-    let SliceGrid { azimuths, rho, nu } = &slices.grid;
-    if azimuths % 2 != 0 {
-        return None;
-    }
-    let full = slices.full();
-    let slice = full.index_axis(ndarray::Axis(0), azimuths / 2);
-    // The factors e^(2πi Ω z) dΩ of the transform, [cell, frequency].
-    let waves = |axis: &FrequencyAxis, half: f64| {
-        let values = axis.values();
-        Array2::from_shape_fn((CELLS, values.len()), |(cell, i)| {
-            let z = half * ((2 * cell + 1) as f64 / CELLS as f64 - 1.0);
-            cis(TAU * values[i] * z) * axis.spacing
-        })
-    };
-    let [y, v] = [waves(rho, half_widths[0]), waves(nu, half_widths[1])];
-    // The sum is written out, because matrix products of the array library differ in their bits
-    // between processors.
-    let sum = |a: ArrayView1<'_, Complex>, b: ArrayView1<'_, Complex>| {
-        let terms = a.iter().zip(b).map(|(a, b)| a * b);
-        terms.fold(Complex::ZERO, |sum, term| sum + term)
-    };
-    let over_y =
-        Array2::from_shape_fn((CELLS, nu.count()), |(i, k)| sum(y.row(i), slice.column(k)));
-    let values = Array2::from_shape_fn((CELLS, CELLS), |(i, j)| sum(over_y.row(i), v.row(j)).re);
-    Some(values)
+    let azimuths = slices.grid.azimuths;
+    let has_slice = azimuths.is_multiple_of(2);
+    has_slice.then(|| slices.light_field(azimuths / 2, 64, half_widths))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
+    use etendue_field::{FrequencyAxis, SliceGrid, cis};
+    use std::f64::consts::{PI, TAU};
 
     /// Reconstructs an off-centre Gaussian from its transform.
     #[test]
