@@ -21,7 +21,8 @@ from etendue.difference import Difference, difference
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
-from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
+from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
+from etendue.theories import compare, theory
 from etendue.variance import SamplerVariance, Variance, VarianceCurve, variance
 from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_scene, probe, render
 
@@ -62,6 +63,7 @@ __all__ = [
     "run",
     "spectrum",
     "sweep",
+    "theory",
     "variance",
 ]
 

@@ -112,8 +112,8 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
     return Measurement(first.scene, raw[0].merged(raw[1:]))
 
 
-def compare(measurement: Measurement, prediction: Prediction | None = None, *, threads: int | None = None) -> Result:
-    """Compares a measurement with a prediction, and returns the verdict. The scene is predicted if no prediction is given."""
+def compare_with(measurement: Measurement, prediction: Prediction | None, threads: int | None) -> Result:
+    """Compares a measurement with a prediction of its scene, which is predicted if none is given."""
     if not isinstance(measurement, Measurement):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise TypeError(f"compare takes a measurement, not {type(measurement).__name__}: `measure` returns one, and `run` does all stages")
     scene = measurement.scene
@@ -152,7 +152,7 @@ def run(
     Raises `SceneError` with all faults of the scene, and `CannotRun` if there is not enough memory.
     """
     scene = as_scene(scene, set, photons, seed, method)
-    return compare(measure(scene, threads=threads, progress=progress), threads=threads)
+    return compare_with(measure(scene, threads=threads, progress=progress), None, threads)
 
 
 @dataclass(frozen=True, eq=False)

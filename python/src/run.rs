@@ -9,11 +9,12 @@ use etendue_field::Crossing;
 use etendue_pipeline::Silent;
 use etendue_pipeline::method::source;
 use etendue_spectrum::Watch;
-use etendue_store::{Failure, Method, predictions};
+use etendue_store::{Failure, Method, predictions, theory};
 use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A scene with its measurement settings.
@@ -107,6 +108,12 @@ impl Run {
             run.predictions(None, &Silent)
         });
         found.map(Prediction)
+    }
+
+    /// Returns the predictions in the bytes of an NPZ file.
+    fn theory(&self, py: Python<'_>, bytes: Vec<u8>) -> PyResult<Prediction> {
+        let found = theory::parse(Path::new("theory"), bytes, &self.0.scene.planes);
+        found.map(Prediction).map_err(|failure| raised(py, failure))
     }
 
     fn compare(

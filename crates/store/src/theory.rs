@@ -32,11 +32,20 @@ const MAX_COUNT: u64 = 1000;
 /// The largest relative difference between two arrays that are said to be equal.
 const SAME: f64 = 1e-9;
 
-/// Reads the prediction of each plane.
+/// Reads the prediction of each plane from a file.
 pub fn read(path: &Path, planes: &[VirtualPlane]) -> Result<Vec<Prediction>, Failure> {
     let shown = path.display();
     let bytes =
         std::fs::read(path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+    parse(path, bytes, planes)
+}
+
+/// The prediction of each plane in the bytes of a file, which messages name as `path`.
+pub fn parse(
+    path: &Path,
+    bytes: Vec<u8>,
+    planes: &[VirtualPlane],
+) -> Result<Vec<Prediction>, Failure> {
     let mut file = NpzFile::new(path.to_owned(), bytes)?;
     let is_known = |name: &String| {
         let parts = name.rsplit_once('/');

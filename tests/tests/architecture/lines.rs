@@ -44,7 +44,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "a smooth mesh stops light on other legs; masks of a path have names; lights have positions; \
          a rim that changes no light is no parameter; `converge` names dark neighbourhoods",
     ),
-    ("python", 1640, 1638, ""),
+    ("python", 1640, 1645, "theories of the user"),
     ("rayfile", 2394, 2394, ""),
     (
         "report",
@@ -67,7 +67,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3571,
+        3581,
         "predictions of other programs are read, and written",
     ),
     ("studies", 4009, 4009, ""),
@@ -86,7 +86,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
     ("worlds", 22_217, 21_904, ""),
-    ("tests of all kinds", 69_203, 67_888, ""),
+    ("tests of all kinds", 69_203, 67_893, ""),
 ];
 
 /// A crate may be smaller than its row says by one line in this many, so that not every change needs

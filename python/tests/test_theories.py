@@ -1,0 +1,75 @@
+"""Theories of the user: arrays, arrays with parameters, and radiance functions."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import etendue
+
+PAGE = (Path(__file__).parents[2] / "docs/own-theory.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    path = tmp_path_factory.mktemp("lamp") / "lamp.ron"
+    path.write_text(re.search(r"```ron\n(.*?)```", PAGE, re.DOTALL)[1])
+    return etendue.measure(path, photons=2**19)
+
+
+@pytest.fixture(scope="module")
+def axes(measured):
+    slices = etendue.compare(measured)["receiver"].slices
+    return slices.rho, slices.nu
+
+
+def lamp_at(distance, axes, n=2000):
+    """The slices of the lamp of the page: a product of an integral over (x, u) and one over (y, v)."""
+    rho, nu = axes
+    x, u = (half * (2 * np.arange(n) + 1 - n) / n for half in (0.3, 0.25))
+    window = np.outer(np.cos(np.pi * x / 0.6) ** 2, np.cos(np.pi * u / 0.5) ** 2)
+    # A cell of x is lit by the part of it that sees the lamp, so that derivatives are smooth.
+    edge = (0.1 - abs(x[:, None] - distance * u)) * n / 0.6 + 0.5
+    light = window * np.clip(edge, 0, 1) * (0.6 / n) * (0.5 / n)
+    one = np.exp(-2j * np.pi * np.outer(rho, x)) @ light @ np.exp(-2j * np.pi * np.outer(u, nu))
+    return np.array([one, one]) * light.sum()
+
+
+def test_arrays_and_their_parameters(measured, axes):
+    slices = lamp_at(1, axes)
+    assert etendue.compare(measured, {"receiver": slices}).verdict == "pass"
+    assert etendue.compare(measured, {"receiver": lamp_at(1.004, axes)}).verdict == "fail"
+    derivative = (lamp_at(1.01, axes) - lamp_at(0.99, axes)) / 0.02
+    theory = {"slices": slices, "parameters": ["distance"], "units": ["m"], "values": [1], "derivatives": [derivative]}
+    found = etendue.compare(measured, {"receiver": theory})["receiver"].parameters["distance"]
+    assert found["unit"] == "m" and found["scene"] == 1
+    assert abs(found["measured"] - 1) < 4 * found["error"] < 1e-3  # four standard errors
+    # The measurement tells the true distance although the theory supposes another.
+    theory |= {"slices": lamp_at(1.004, axes), "values": [1.004]}
+    found = etendue.compare(measured, {"receiver": theory})["receiver"].parameters["distance"]
+    assert abs(found["measured"] - 1) < 4 * found["error"] + 1e-4  # and second order in 0.004
+
+
+@pytest.mark.parametrize("sign, verdict", [(1, "pass"), (-1, "fail")])
+def test_radiance_functions(measured, sign, verdict):
+    def radiance(x, y, u, v):
+        return (abs(x - sign * u) < 0.1) & (abs(y - sign * v) < 0.1)
+
+    few = etendue.measure(measured.scene.file, photons=2**15)
+    plane = etendue.compare(few, {"receiver": radiance})["receiver"]
+    assert plane.verdict == verdict
+    assert plane.report["quadrature_error"] < 0.3 * plane.report["noise_limit"]
+
+
+def test_theories_that_do_not_fit_are_refused(measured):
+    for theory, message in [
+        ({"receiver": np.zeros((2, 3))}, "receiver/slices"),
+        ({"elsewhere": np.zeros((2, 3))}, "elsewhere/slices"),
+        ({"receiver": {"slice": [0]}}, "receiver/slice"),
+        ({}, "receiver/slices"),
+    ]:
+        with pytest.raises(etendue.SceneError, match=message):
+            etendue.compare(measured, theory)
+    with pytest.raises(ValueError, match="no plane 'elsewhere'"):
+        etendue.compare(measured, {"elsewhere": lambda x, y, u, v: x})
