@@ -11,6 +11,7 @@ use etendue_field::{
 };
 use etendue_spectrum::PROJECTION_BINS;
 use ndarray::{Array1, Array3, ArrayD, ArrayViewD, Axis, Ix3, IxDyn};
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
@@ -34,9 +35,13 @@ const SAME: f64 = 1e-9;
 
 /// Reads the prediction of each plane from a file.
 pub fn read(path: &Path, planes: &[VirtualPlane]) -> Result<Vec<Prediction>, Failure> {
-    let shown = path.display();
-    let bytes =
-        std::fs::read(path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+    let unread =
+        |why: &dyn Display| Failure::bad_input(format!("cannot read {}: {why}", path.display()));
+    // A device could be read for ever.
+    if std::fs::metadata(path).is_ok_and(|of| !of.is_file()) {
+        return Err(unread(&"it is no regular file"));
+    }
+    let bytes = std::fs::read(path).map_err(|e| unread(&e))?;
     parse(path, bytes, planes)
 }
 
@@ -164,6 +169,9 @@ impl TheoryArrays<'_> {
     /// The relative error of the slices, if the file states errors.
     fn error(&mut self, slices: &Slices, replicates: &[Slices]) -> Result<Option<f64>, Failure> {
         let (name, size) = (self.name("sigma"), slices.norm());
+        if size <= 0.0 {
+            return Ok(None);
+        }
         if !replicates.is_empty() {
             if self.file.has(&name) {
                 let what = "must be left out, because replicates state the errors";
@@ -177,7 +185,7 @@ impl TheoryArrays<'_> {
             let error = squares.sum::<f64>() / (count * (count - 1.0));
             return Ok(Some(error.sqrt()));
         }
-        if !self.file.has(&name) || size <= 0.0 {
+        if !self.file.has(&name) {
             return Ok(None);
         }
         let sigma: ArrayD<f64> = self.array("sigma", None)?;
