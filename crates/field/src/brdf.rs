@@ -107,7 +107,10 @@ impl Lobe {
     /// the normal.
     #[must_use]
     pub fn is_about_mirror(&self) -> bool {
-        !matches!(self, Self::Lambertian)
+        match self {
+            Self::Lambertian => false,
+            Self::Phong { .. } | Self::Beckmann { .. } | Self::Ggx { .. } => true,
+        }
     }
 
     /// The lobe's parameter and the name of the parameter.

@@ -83,7 +83,12 @@ impl Light {
     /// hit only lights for which this is true.
     #[must_use]
     pub fn has_extent(&self) -> bool {
-        matches!(self, Self::Area { .. } | Self::Environment { .. })
+        match self {
+            Self::Area { .. } | Self::Environment { .. } => true,
+            Self::Point { .. } | Self::Projector { .. } | Self::Beam { .. } | Self::Rays { .. } => {
+                false
+            }
+        }
     }
 
     /// Checks whether the light shines along the same directions everywhere, like an environment.

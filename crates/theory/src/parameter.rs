@@ -82,7 +82,7 @@ impl Parameter {
                 sizes.chain(exponent).collect()
             }
             Light::Projector { .. } | Light::Beam { .. } => [0, 1].map(Self::ImageWidth).to_vec(),
-            _ => Vec::new(),
+            Light::Point { .. } | Light::Environment { .. } | Light::Rays { .. } => Vec::new(),
         }
     }
 

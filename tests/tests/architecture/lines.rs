@@ -27,7 +27,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "field",
         3031,
-        3104,
+        3112,
         "light fields of slices came from report; what triangles with interpolated normals do to radiance; `grouped` from pipeline; corners \
          of a hole in the scene's order",
     ),
@@ -74,7 +74,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "theory",
         15390,
-        15633,
+        15645,
         "derivatives use the rays of the prediction for masks, and stop when accurate; surfaces have \
          positions, and so have objects beside the path",
     ),

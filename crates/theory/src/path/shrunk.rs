@@ -78,7 +78,7 @@ fn shrunk_light(light: &Light, factor: f64) -> Light {
                 shape;
             *center = center.map(|c| c * factor);
         }
-        _ => {}
+        Light::Point { .. } | Light::Environment { .. } | Light::Rays { .. } => {}
     }
     light
 }

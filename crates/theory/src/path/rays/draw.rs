@@ -105,7 +105,10 @@ impl<'a> Outer<'a> {
                 let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
                 Self::Sky(environment, Box::new(SkyDensity::new(environment, normal)?))
             }
-            _ => Self::Center,
+            Light::Point { .. }
+            | Light::Projector { .. }
+            | Light::Beam { .. }
+            | Light::Rays { .. } => Self::Center,
         })
     }
 

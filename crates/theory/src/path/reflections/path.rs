@@ -64,7 +64,10 @@ impl<'a> PathStart<'a> {
                 Self::Sky(Box::new(rays))
             }
             Light::Beam { .. } => Self::Beam(at_light()?.given([2, 3])?),
-            _ => Self::Points(at_light()?.given([0, 1])?),
+            Light::Area { .. }
+            | Light::Point { .. }
+            | Light::Projector { .. }
+            | Light::Rays { .. } => Self::Points(at_light()?.given([0, 1])?),
         })
     }
 }

@@ -263,7 +263,10 @@ impl<'a> Lights<'a> {
                 let from = self.sky.as_ref()?.draw(at);
                 self.of_sky(-environment.frame.vector_to_world(from), from)
             }
-            _ => None,
+            Light::Point { .. }
+            | Light::Projector { .. }
+            | Light::Beam { .. }
+            | Light::Rays { .. } => None,
         }
     }
 
@@ -292,7 +295,10 @@ impl<'a> Lights<'a> {
                 meets.then(|| (LightPart::Point([a, b]), 1.0 / shape.area()))
             }
             Light::Environment { environment } => self.of_sky(-wi, environment.origin_of(-wi)),
-            _ => None,
+            Light::Point { .. }
+            | Light::Projector { .. }
+            | Light::Beam { .. }
+            | Light::Rays { .. } => None,
         }
     }
 

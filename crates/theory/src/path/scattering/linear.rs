@@ -120,7 +120,7 @@ pub(crate) fn kernel(
             let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
             reflected() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
         }
-        _ => {
+        Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
             let to = away(theta - incidence, phi);
             brdf::lobe(brdf, DVec3::Z, away(incidence, 0.0), to)
         }
