@@ -26,8 +26,8 @@ FIRST, LAST = 2**12, 2**20
 """The first and the largest number of points of a replicate."""
 SHARE = 0.3
 """The largest share of the noise that the error of a function's slices may have."""
-# The first components of Cools, Kuo and Nuyens (2006), whose lattices are good for each power of two.
-VECTOR = np.array([1, 182667, 469891, 498753], dtype=np.uint64)
+# Roberts (2018): multiples of powers of the root of x⁵ = x + 1, a sequence of low discrepancy for any number of points.
+STEPS = 1.1673039782614187 ** -np.arange(1.0, 5.0)
 
 
 def theory(scene: Scene, planes: Mapping[str, PlaneTheory], *, points: int = FIRST) -> Prediction:
@@ -35,7 +35,7 @@ def theory(scene: Scene, planes: Mapping[str, PlaneTheory], *, points: int = FIR
 
     `planes` has for each plane an array of slices [azimuth, rho, nu], with the axes of the plane's `slices` or with rho ≥ 0; or a mapping
     with the arrays of docs/own-theory.md (`slices`, `replicates`, `sigma`, `parameters`, `units`, `values`, `derivatives`); or a function
-    `radiance(x, y, u, v)` of arrays. The function is evaluated at `points` points of each of 32 shifted lattices in the plane's window.
+    `radiance(x, y, u, v)` of arrays. The function is evaluated at `points` points of each of 32 shifted sequences in the plane's window.
 
     Raises `SceneError` if an array does not fit.
     """
@@ -59,6 +59,8 @@ def compare(
     `prediction` is a prediction of Étendue, by default that of the scene, or a theory of the user: for each plane, what `theory` takes.
     The points of functions are doubled until the error of their slices is at most 0.3 of the noise, or until there are 2²⁰.
     """
+    if prediction is not None and not isinstance(prediction, (Prediction, Mapping)):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError(f"a theory is {{plane: theory}}, not {type(prediction).__name__}")
     if not isinstance(prediction, Mapping):
         return compare_with(measurement, prediction, threads)
     points = FIRST
@@ -80,12 +82,17 @@ def _replicates(scene: Scene, name: str, radiance: Radiance, points: int) -> NDA
     frequencies = plane.get("frequencies") or file["frequencies"]
     profiles = [window["x"], window.get("y") or window["x"], window["u"], window.get("v") or window["u"]]
     half = np.array([_half_width(profile) for profile in profiles])
-    lattice = (np.arange(points, dtype=np.uint64)[:, None] * VECTOR % np.uint64(points)) / points
+    sequence = np.arange(points)[:, None] * STEPS
     random = np.random.default_rng(1)
 
     def one() -> NDArray[np.complex128]:
-        x, y, u, v = ((2 * ((lattice + random.random(4)) % 1) - 1) * half).T
-        values = np.broadcast_to(np.asarray(radiance(x, y, u, v), dtype=np.float64), (points,))
+        x, y, u, v = ((2 * ((sequence + random.random(4)) % 1) - 1) * half).T
+        # The function may change its arguments.
+        values = np.asarray(radiance(x.copy(), y.copy(), u.copy(), v.copy()))
+        if values.dtype.kind not in "buif" or values.shape not in ((), (points,)):
+            what = f"{values.dtype} of shape {values.shape}"
+            raise ValueError(f"the function of plane {name} returned {what}; allowed: a real number for each of {points} rays")
+        values = np.broadcast_to(values.astype(np.float64), (points,))
         weight = values * (np.prod(2 * half) / points)
         return spectrum(x, y, u, v, weight, window=window, frequencies=frequencies, batches=3).slices
 

@@ -128,13 +128,13 @@ fn damaged_theories_are_refused_by_name() {
         (vec![("receiver/slices", infinite.into_dyn())], "not finite"),
         (
             vec![("receiver/replicates", single.into_dyn())],
-            "must be 2 to 1000",
+            "must be 3 to 1000",
         ),
         (
             vec![("receiver/slice", receiver.clone().into_dyn())],
             "allowed: PLANE/ARRAY",
         ),
-        (vec![], "receiver/slices"),
+        (vec![], "receiver/slices: is missing"),
         (
             vec![
                 ("receiver/slices", receiver.into_dyn()),

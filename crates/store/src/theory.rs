@@ -125,7 +125,7 @@ impl TheoryArrays<'_> {
     fn prediction(&mut self, path: &Path) -> Result<Prediction, Failure> {
         self.check_axes()?;
         let plane = self.plane;
-        let replicates = self.stack("replicates", 2)?;
+        let replicates = self.stack("replicates", 3)?;
         let slices = self.slices(&replicates)?;
         let quadrature_error = self.error(&slices, &replicates)?;
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
@@ -157,6 +157,9 @@ impl TheoryArrays<'_> {
         let name = self.name("slices");
         if !replicates.is_empty() && !self.file.has(&name) {
             return Ok(mean);
+        }
+        if !self.file.has(&name) {
+            return Err(self.file.fault(&name, "is missing, and so are replicates"));
         }
         let all = self.array("slices", None)?;
         let slices = self.folded("slices", all.view())?;

@@ -177,7 +177,7 @@ fn verdict(diff: &Diff) -> String {
             let hint = if is_named || diff.scene.iter().all(is_of_run) {
                 ""
             } else {
-                "; no parameter of both results differs, and results of more photons may have more"
+                "; no parameter of both results differs, but more photons may give more parameters"
             };
             format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e}){hint}")
         }
