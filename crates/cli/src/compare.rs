@@ -10,7 +10,6 @@ use etendue_pipeline::{PredictionSource, read_case};
 use etendue_report::{OutputOptions, Stopwatch, plan};
 use etendue_store::stored::check_earlier;
 use etendue_store::{ArgumentStyle, Failure, Results, SUMMARY};
-use std::path::Path;
 
 /// Runs `etendue compare`; returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
@@ -18,7 +17,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let stage = progress::stage("reading", args.work.quiet);
     let predicted = match (&args.theory, &args.predicted) {
         (Some(file), _) => PredictionSource::File(file),
-        (None, folder) => PredictionSource::Folder(folder.as_deref().unwrap_or(Path::new(""))),
+        (None, Some(folder)) => PredictionSource::Folder(folder),
+        (None, None) => unreachable!("one of both arguments is required"),
     };
     let (case, inputs) = read_case(&args.measured, predicted)?;
     stage.finish_and_clear();

@@ -38,7 +38,7 @@ pub(crate) fn leave_open(
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail
             });
-            // A first-order chain that fails beside exact theory is wrong for any number of photons.
+            // A chain that fails beside exact theory is wrong for any number of photons.
             if !has_wrong_map {
                 report.verdict = Verdict::Undecided;
             }

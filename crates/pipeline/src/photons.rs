@@ -91,7 +91,7 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
             let mut content = match save {
                 Save::Mcpl => Content::mcpl(&rays, rows),
                 Save::Tm25 => {
-                    // The header states the flux of all rays, so it is known only after a trace of its own.
+                    // The header states the flux of all rays, which takes a trace of its own.
                     let mut flux = 0.0;
                     trace(case, &*source, plane, &mut |crossings| {
                         flux += crossings.iter().map(|c| rays.watts(c)).sum::<f64>();

@@ -46,7 +46,6 @@ pub fn read_case(
     }
     shards[1..].iter().try_for_each(Stored::check_inputs)?;
     let scene = first.scene()?;
-    let measurement = merged(&shards, &scene)?;
     let method = first.index.content.method;
     let mut inputs: Vec<PathBuf> = shards.iter().flat_map(Stored::paths).collect();
     let theories = Applicability::of_planes(&scene);
@@ -64,6 +63,7 @@ pub fn read_case(
             theory::read(file, &scene.planes)?
         }
     };
+    let measurement = merged(&shards, &scene)?;
     let case = MeasuredScene {
         method,
         predictions,

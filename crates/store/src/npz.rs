@@ -187,9 +187,6 @@ impl fmt::Debug for NpzFile {
     }
 }
 
-/// The fault of an array whose header cannot be read.
-const NO_ARRAY: &str = "its header does not describe an array of numbers";
-
 /// The largest number of bytes of an NPY file before its data.
 const HEADER: usize = 1 << 16;
 
@@ -259,10 +256,8 @@ impl NpzFile {
         name: &str,
         bytes: usize,
     ) -> Result<(NpyHeader, Vec<A>), Failure> {
-        let bytes = self.entry(name, bytes)?;
-        let Some((header, start)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, NO_ARRAY));
-        };
+        let bytes = self.entry(name, self.limit(bytes))?;
+        let (header, start) = self.header(name, &bytes)?;
         if header.descr != A::DESCR {
             let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
             return Err(self.fault(name, is));
@@ -292,19 +287,14 @@ impl NpzFile {
 
     /// The shape of an array.
     pub fn shape(&mut self, name: &str) -> Result<Vec<u64>, Failure> {
-        let bytes = self.entry(name, 0)?;
-        let Some((header, _)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, NO_ARRAY));
-        };
-        Ok(header.shape)
+        let bytes = self.entry(name, HEADER)?;
+        Ok(self.header(name, &bytes)?.0.shape)
     }
 
     /// A list of texts.
     pub fn texts(&mut self, name: &str) -> Result<Vec<String>, Failure> {
-        let bytes = self.entry(name, self.length)?;
-        let Some((header, start)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, NO_ARRAY));
-        };
+        let bytes = self.entry(name, self.limit(self.length))?;
+        let (header, start) = self.header(name, &bytes)?;
         let width = header.descr.strip_prefix("<U");
         let width = width.and_then(|width| width.parse::<usize>().ok());
         let (Some(width @ 1..), [count]) = (width, &header.shape[..]) else {
@@ -355,10 +345,20 @@ impl NpzFile {
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// The NPY file `name` in the archive. The number of unpacked bytes is at most the sum
-    /// of `numbers`, the size of the archive and the size of a header.
-    fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
-        let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
+    /// The header of array `name`, whose file has these bytes, and the offset of the data.
+    fn header(&self, name: &str, bytes: &[u8]) -> Result<(NpyHeader, usize), Failure> {
+        let what = "its header does not describe an array of numbers";
+        NpyHeader::read(bytes).ok_or_else(|| self.fault(name, what))
+    }
+
+    /// The number of bytes that are unpacked at most for `numbers` bytes of numbers: as many more
+    /// as the archive and a header have.
+    fn limit(&self, numbers: usize) -> usize {
+        numbers.saturating_add(self.length).saturating_add(HEADER)
+    }
+
+    /// The first `limit` bytes of the NPY file `name` in the archive.
+    fn entry(&mut self, name: &str, limit: usize) -> Result<Vec<u8>, Failure> {
         let mut bytes = Vec::new();
         let limit = u64::try_from(limit).unwrap_or(u64::MAX);
         self.archive

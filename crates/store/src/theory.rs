@@ -1,6 +1,7 @@
 //! Reads predictions of any program from NPZ files, and writes them.
 //!
-//! docs/own-theory.md lists the arrays. Radiance is real, so a slice is its own conjugate at −ρ and −ν.
+//! docs/own-theory.md lists the arrays. Radiance is real, so a slice is its own conjugate at −ρ
+//! and −ν.
 
 use crate::Failure;
 use crate::npz::{Npz, NpzFile, Number, half_axes};
@@ -79,40 +80,44 @@ pub fn parse(
 
 /// The file of the predictions of planes.
 pub fn bytes(planes: &[VirtualPlane], predictions: &[Prediction]) -> Result<Vec<u8>, Failure> {
-    let each = planes.iter().zip(predictions);
-    let mut all = each.map(|(plane, prediction)| (&plane.name, prediction));
-    let file = all.try_fold(Npz::default(), |file, (plane, prediction)| {
-        let Prediction {
-            slices,
-            replicates,
-            parameters,
-            ..
-        } = prediction;
-        let name = |array: &str| format!("{plane}/{array}");
-        let grid = &slices.grid;
-        let mut file = file.add(&name("slices"), &slices.half)?;
-        for (axis, values) in half_axes(grid) {
-            file = file.add(&name(axis), &values)?;
-        }
-        if !replicates.is_empty() {
-            file = file.add(&name("replicates"), &stacked(grid, replicates))?;
-        } else if let Some(error) = prediction.error() {
-            // The error of a rule is known as a whole, and not for each frequency.
-            let sigma = error * slices.norm() / (slices.half.len() as f64).sqrt();
-            let sigma = Array3::from_elem(grid.half_shape(), sigma);
-            file = file.add(&name("sigma"), &sigma)?;
-        }
-        let texts = |of: fn(&PredictedParameter) -> &String| -> Vec<String> {
-            parameters.iter().map(of).cloned().collect()
-        };
-        let values: Array1<f64> = parameters.iter().map(|one| one.value).collect();
-        let derivatives = parameters.iter().map(|one| &one.derivative);
-        file.add_texts(&name("parameters"), &texts(|one| &one.name))?
-            .add_texts(&name("units"), &texts(|one| &one.unit))?
-            .add(&name("values"), &values)?
-            .add(&name("derivatives"), &stacked(grid, derivatives))
-    })?;
+    let mut file = Npz::default();
+    for (plane, prediction) in planes.iter().zip(predictions) {
+        file = with_plane(file, &plane.name, prediction)?;
+    }
     file.bytes()
+}
+
+/// Adds the prediction of a plane to a file.
+fn with_plane(mut file: Npz, plane: &str, prediction: &Prediction) -> Result<Npz, Failure> {
+    let Prediction {
+        slices,
+        replicates,
+        parameters,
+        ..
+    } = prediction;
+    let name = |array: &str| format!("{plane}/{array}");
+    let grid = &slices.grid;
+    file = file.add(&name("slices"), &slices.half)?;
+    for (axis, values) in half_axes(grid) {
+        file = file.add(&name(axis), &values)?;
+    }
+    if !replicates.is_empty() {
+        file = file.add(&name("replicates"), &stacked(grid, replicates))?;
+    } else if let Some(error) = prediction.error() {
+        // The error of a rule is known as a whole, and not for each frequency.
+        let sigma = error * slices.norm() / (slices.half.len() as f64).sqrt();
+        let sigma = Array3::from_elem(grid.half_shape(), sigma);
+        file = file.add(&name("sigma"), &sigma)?;
+    }
+    let texts = |of: fn(&PredictedParameter) -> &String| -> Vec<String> {
+        parameters.iter().map(of).cloned().collect()
+    };
+    let values: Array1<f64> = parameters.iter().map(|one| one.value).collect();
+    let derivatives = parameters.iter().map(|one| &one.derivative);
+    file.add_texts(&name("parameters"), &texts(|one| &one.name))?
+        .add_texts(&name("units"), &texts(|one| &one.unit))?
+        .add(&name("values"), &values)?
+        .add(&name("derivatives"), &stacked(grid, derivatives))
 }
 
 /// The arrays of one plane in a file.
@@ -270,8 +275,8 @@ impl TheoryArrays<'_> {
         Ok(())
     }
 
-    /// An array with the axes [azimuth, ρ, ν], with all ρ or with ρ ≥ 0, and with an axis of `counts`
-    /// items before them if it is given.
+    /// An array with the axes [azimuth, ρ, ν], with all ρ or with ρ ≥ 0, and with an axis of
+    /// `counts` items before them if it is given.
     fn array<A: Number>(
         &mut self,
         array: &str,

@@ -67,7 +67,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3592,
+        3597,
         "predictions of other programs are read, and written",
     ),
     ("studies", 4009, 4009, ""),

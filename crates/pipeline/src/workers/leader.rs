@@ -97,7 +97,7 @@ impl<'a> Leader<'a> {
         let give = |number| packing.packed_partial(&taken(number));
         let mut others = Vec::new();
         let mut take = |piece: &Piece, bytes: &[u8]| {
-            // A process that ends returns the parts that it has finished, and another one continues.
+            // A process that ends returns its finished parts, and another one continues.
             if piece.parts.is_some() {
                 let partial = packing.unpacked_partial(source, piece, bytes)?;
                 watch.begun(&partial);

@@ -166,12 +166,18 @@ fn verdict(diff: &Diff) -> String {
             )
         }
         Verdict::Fail => {
-            let mut is_named = false;
-            let differing = diff.planes.iter().filter_map(|plane| {
+            let each = diff.planes.iter().filter_map(|plane| {
                 let what = plane.compared()?.differing(level);
-                is_named |= what.iter().any(|what| what != SLICES);
-                (!what.is_empty()).then(|| format!("{} at {}", what.join(", "), plane.name))
+                (!what.is_empty()).then_some((plane, what))
             });
+            let each: Vec<_> = each.collect();
+            let is_named = each
+                .iter()
+                .flat_map(|(_, what)| what)
+                .any(|what| what != SLICES);
+            let differing = each
+                .iter()
+                .map(|(plane, what)| format!("{} at {}", what.join(", "), plane.name));
             let differing = differing.collect::<Vec<String>>().join("; ");
             // A result of few photons lacks parameters of edges behind surfaces.
             let hint = if is_named || diff.scene.iter().all(is_of_run) {

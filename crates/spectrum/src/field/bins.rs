@@ -60,7 +60,7 @@ impl RadialBins {
                 ring([2, 3], index).map(|ring| Angular {
                     index,
                     ring,
-                    // The field is real, so each frequency with v > 0 also stands for its conjugate.
+                    // The field is real: a frequency with v > 0 also stands for its conjugate.
                     weight: if index[1] == 0 { 1 } else { 2 },
                 })
             })

@@ -159,8 +159,8 @@ pub fn measure_field(
     let spectrum = run.transform.spectrum(sum);
     let bins = RadialBins::new(&grid);
     let moments = options.covariance.then(|| Moments::new(grid, &plane.grid));
-    // Powers of groups need the spectrum of all groups, so the photons of groups whose grids are not
-    // kept are traced again.
+    // Powers of groups need the spectrum of all groups. Groups whose grids are not kept are
+    // traced again.
     let mut found = run.powers(&bins, moments.as_ref(), &spectrum, kept);
     let groups = found.iter_mut().filter_map(|found| found.spectrum.take());
     let groups = groups.collect();
