@@ -4,14 +4,14 @@ use crate::arrays::Arrays;
 use crate::live::Live;
 use crate::outcome::cells;
 use etendue_compare::noise_dof;
-use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_field::{Complex, Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::Along;
 use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{
-    CrossPower, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
+    CrossPower, Measurement, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
 };
 use etendue_store::Failure;
-use ndarray::Array1;
+use ndarray::{Array1, Array4};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -68,6 +68,25 @@ impl Rays {
         }
         Ok(Self(all))
     }
+
+    fn measured(&self, plane: &VirtualPlane, live: &Live) -> Measurement {
+        let batches = (0..self.0.len()).filter_map(|i| u32::try_from(i).ok());
+        let mut batches = batches.map(PartialBatch::new);
+        let all = self.0.iter().map(|batch| batch.len() as u64).sum();
+        let watch = live.trace(all, "rays");
+        measure_watched(self, std::slice::from_ref(plane), &mut batches, &watch).0
+    }
+
+    /// The sum of each batch times the number of batches, [batch, azimuth, ρ ≥ 0, ν].
+    pub(crate) fn sums(&self, plane: &VirtualPlane, live: &Live) -> Array4<Complex> {
+        let measured = self.measured(plane, live);
+        let [azimuths, rho, nu] = plane.grid.half_shape();
+        let mut sums = Array4::zeros((self.0.len(), azimuths, rho, nu));
+        for (mut sum, batch) in sums.outer_iter_mut().zip(measured.at_plane(0)) {
+            sum.assign(&batch.slices.half);
+        }
+        sums
+    }
 }
 
 impl PhotonSource for Rays {
@@ -109,11 +128,7 @@ pub(crate) fn spectrum(
     plane: &VirtualPlane,
     live: &Live,
 ) -> Result<Spectrum, Failure> {
-    let batches = (0..rays.0.len()).filter_map(|i| u32::try_from(i).ok());
-    let mut batches = batches.map(PartialBatch::new);
-    let all = rays.0.iter().map(|batch| batch.len() as u64).sum();
-    let watch = live.trace(all, "rays");
-    let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, &watch);
+    let measured = rays.measured(plane, live);
     let few = |error: estimate::TooFewBatches| Failure::bad_input(error);
     let power = CrossPower::new(&measured, 0).map_err(few)?;
     let grid = &plane.grid;
