@@ -39,7 +39,7 @@ class Outcome:
 class Run:
     @staticmethod
     def read(
-        scene: SceneArgument, set: list[tuple[str, str]], photons: int | None, seed: int | None, backward: bool
+        scene: SceneArgument, set: list[tuple[str, str]], photons: int | None, seed: int | None, method: str
     ) -> Run: ...
     @property
     def name(self) -> str: ...

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from etendue.ranges import thread_count
+from etendue.rays import Spectrum
 from etendue.result import Result
 from etendue.scene import Scene
 from etendue.stages import Measurement, Prediction, compare_with
@@ -59,7 +60,7 @@ def theory(scene: Scene, planes: Mapping[str, PlaneTheory], *, points: int = FIR
 
 
 def compare(
-    measurement: Measurement,
+    measurement: Measurement | Spectrum,
     prediction: Prediction | Mapping[str, PlaneTheory] | str | os.PathLike[str] | None = None,
     *,
     threads: int | None = None,
@@ -67,12 +68,18 @@ def compare(
     """Compares a measurement with a prediction, and returns the verdict.
 
     `prediction` is a prediction of Étendue, by default that of the scene, or a theory of the user: for each plane, what `theory` takes; or
-    an NPZ file of arrays PLANE/ARRAY. The points of functions are doubled until the error of their slices is at most 0.3 of the noise, or
+    an NPZ file of arrays PLANE/ARRAY. A `Spectrum` of rays has one plane, "rays", and needs a theory of the user. The points of functions are doubled until the error of their slices is at most 0.3 of the noise, or
     until there are 2²⁰.
     """
     if isinstance(prediction, (str, os.PathLike)):
         with np.load(prediction) as file:
             prediction = dict(file)
+    if isinstance(measurement, Spectrum):
+        if measurement.measurement is None:
+            raise ValueError("this spectrum was pickled, which leaves out its batches; compute it again to compare it")
+        measurement = measurement.measurement
+        if not isinstance(prediction, Mapping):
+            raise TypeError("compare needs a theory of rays, {'rays': theory}: Étendue does not know their scene")
     if not isinstance(prediction, Mapping):
         if prediction is not None and not isinstance(prediction, Prediction):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise TypeError(f"a theory is {{plane: theory}}, not {type(prediction).__name__}")

@@ -2,7 +2,7 @@
 
 use crate::arrays::Arrays;
 use crate::live::Live;
-use crate::outcome::cells;
+use crate::outcome::{self, cells};
 use etendue_compare::noise_dof;
 use etendue_field::{Complex, Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::Along;
@@ -25,7 +25,8 @@ pub(crate) struct Rays(Vec<Vec<Crossing>>);
 
 impl Rays {
     /// Creates rays from columns x, y, u, v and weight. Weights are multiplied by the number of
-    /// batches, so that the mean over batches is the sum over all rays.
+    /// batches, and by the number of rays of their batch, so that the mean over batches is the sum
+    /// over all rays.
     pub(crate) fn new(
         columns: &[PyReadonlyArray1<'_, f64>; 5],
         batch: &PyReadonlyArray1<'_, u32>,
@@ -66,6 +67,10 @@ impl Rays {
                 "batch {empty} of {batches} has no ray; allowed: at least one ray per batch"
             ));
         }
+        for own in &mut all {
+            let count = own.len() as f64;
+            own.iter_mut().for_each(|ray| ray.weight *= count);
+        }
         Ok(Self(all))
     }
 
@@ -90,9 +95,8 @@ impl Rays {
 }
 
 impl PhotonSource for Rays {
-    fn emitted(&self, _batch: u32) -> u64 {
-        // If one photon is emitted, the result of a batch is the sum over its rays.
-        1
+    fn emitted(&self, batch: u32) -> u64 {
+        self.0[batch as usize].len() as u64
     }
 
     fn emit(
@@ -118,6 +122,7 @@ pub(crate) struct Spectrum {
     /// Effective number of independent real numbers in the noise of the slices.
     noise_dof: Option<f64>,
     batches: usize,
+    measurement: Measurement,
     /// The slope and the bandwidths, with their names.
     numbers: [(&'static str, Option<Uncertain>); 5],
 }
@@ -147,6 +152,7 @@ pub(crate) fn spectrum(
             noise_dof(&measured, 0).map_err(few)?
         },
         batches: rays.0.len(),
+        measurement: measured.clone(),
         numbers: [
             ("slope", power.statistic(|p| shear_slope(p, grid))),
             ("bandwidth_rho", along_rho(&power)),
@@ -180,6 +186,7 @@ impl Spectrum {
         all.set_item("in_window", self.in_window)?;
         all.set_item("noise_dof", self.noise_dof)?;
         all.set_item("batches", self.batches)?;
+        all.set_item("measurement", outcome::Measurement(self.measurement))?;
         for (name, number) in self.numbers {
             all.set_item(name, number.map(|n| (n.value, n.error)))?;
         }

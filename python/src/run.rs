@@ -32,14 +32,12 @@ impl Run {
         set: Vec<(String, String)>,
         photons: Option<u64>,
         seed: Option<u64>,
-        backward: bool,
+        method: &str,
     ) -> PyResult<Self> {
         let source = scene.source(&set)?;
-        let method = if backward {
-            Method::Backward
-        } else {
-            Method::Photons
-        };
+        let methods = [Method::Photons, Method::Backward, Method::Given];
+        let named = methods.into_iter().find(|known| known.name() == method);
+        let method = named.unwrap_or(Method::Photons);
         let run = etendue_pipeline::Run::read(&source, method, |run| {
             run.photons = photons.unwrap_or(run.photons);
             run.seed = seed.unwrap_or(run.seed);

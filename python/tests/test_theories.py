@@ -1,5 +1,6 @@
 """Theories of the user: arrays, arrays with parameters, and radiance functions."""
 
+import pickle
 import re
 from pathlib import Path
 
@@ -115,6 +116,26 @@ def test_a_wrong_convention_is_named(behind_hole, wrong, hint):
     assert plane.verdict == "fail"
     said = [words for words in plane.report["warnings"] if "would agree" in words]
     assert hint in said[0] if hint else not said
+
+
+def test_spectra_of_rays(behind_hole):
+    random = np.random.default_rng(1)
+    x, y, u, v = (half * random.uniform(-1, 1, 200_000) for half in (0.3, 0.3, 0.25, 0.25))
+    scene = behind_hole.scene.file
+    found = etendue.spectrum(x, y, u, v, radiance(x, y, u, v), window=scene["window"], frequencies=scene["frequencies"])
+    scale = 16 * (0.3 * 0.25) ** 2 / 200_000  # the volume of the window for each ray
+    for factor, verdict in [(1, "pass"), (1.1, "fail")]:
+        result = etendue.compare(found, {"rays": lambda *at: factor * radiance(*at) / scale})
+        assert result.verdict == verdict
+        assert not result.summary["inquiries"]
+    assert "multiplied by 0.9" in "".join(result["rays"].report["warnings"])
+    assert result.summary["photons"] == 200_000
+    with pytest.raises(TypeError, match="needs a theory"):
+        etendue.compare(found)
+    copy = pickle.loads(pickle.dumps(found))
+    assert (copy.slices == found.slices).all()
+    with pytest.raises(ValueError, match="was pickled"):
+        etendue.compare(copy, {"rays": radiance})
 
 
 def test_files_of_arrays(measured, axes, tmp_path):
