@@ -28,8 +28,8 @@ STEPS = 1.324717957244746 ** -np.arange(1.0, 3.0)
 class Lobe:
     """A BRDF, which spreads light over directions at each place: ℓ'(θₒ, φₒ) = ∫ ℓ(θ, φ) ρ dθ dφ (docs/theory.md (41)).
 
-    Coordinates are angles in the frames of the local normals, after the cosine (`Mask.cosine`) and the mirror (`Map.mirror`). A constant BRDF
-    also takes slopes, with a `box`.
+    Coordinates are angles in the frames of the local normals, after the cosine (`Mask.cosine`) and the mirror (`Map.mirror`). A constant
+    BRDF also takes slopes, with a `box`.
 
     The integral is a mean over `nodes` directions, which a pseudo-random function of the outgoing ray shifts. So the mean is unbiased over
     rays, and `etendue.compare` finds its error. Raises `ValueError` if a number is out of its range.
@@ -62,7 +62,8 @@ class Lobe:
     def lambertian(cls, albedo: float) -> Lobe:
         """A diffuse surface."""
         rho = real("albedo", albedo) / math.pi
-        return cls(f"Lambertian, albedo {albedo:g}", lambda theta, phi, to_theta, to_phi: rho, law="ℓ' = (albedo/π) ∫ dE (Eqs. 6 and 7, corrected)")
+        law = "ℓ' = (albedo/π) ∫ dE (Eqs. 6 and 7, corrected)"
+        return cls(f"Lambertian, albedo {albedo:g}", lambda theta, phi, to_theta, to_phi: rho, law=law)
 
     @classmethod
     def phong(cls, exponent: float, albedo: float = 1.0) -> Lobe:
@@ -74,13 +75,13 @@ class Lobe:
 
     @classmethod
     def table(cls, angles: ArrayLike, values: ArrayLike) -> Lobe:
-        """A BRDF tabulated over the angle from the mirror direction, ascending, in radians. It is interpolated linearly, and zero beyond the
-        last angle."""
+        """A BRDF over the angle from the mirror direction in radians, ascending; interpolated linearly, and zero beyond the last angle."""
         at, value = (finite(name, numbers, np.shape(angles)) for name, numbers in (("angles", angles), ("values", values)))
         if at.ndim != 1 or at.size < 2 or not (np.diff(at) > 0).all():
             raise ValueError(f"angles has shape {at.shape}; allowed: two or more ascending numbers")
         width = max(float(at[np.argmax(value < 0.5 * value.max())]), float(at[1] - at[0]))
-        return cls(f"table of {at.size} angles", _of_angle(lambda cos: np.interp(np.arccos(np.clip(cos, -1, 1)), at, value, right=0.0)), width)
+        brdf = _of_angle(lambda cos: np.interp(np.arccos(np.clip(cos, -1, 1)), at, value, right=0.0))
+        return cls(f"table of {at.size} angles", brdf, width)
 
     @classmethod
     def ggx(cls, roughness: float, albedo: float = 1.0) -> Lobe:

@@ -84,9 +84,10 @@ class Map:
 
     @classmethod
     def lens(cls, focal_length: float) -> Map:
-        """A thin lens of a focal length in metres, positive if it converges light. Exact for rays; keeps radiance to second order in slopes."""
+        """A thin lens of a focal length in metres, positive if it converges light. Exact for rays; radiance to second order."""
         f = real("focal_length", focal_length, nonzero=True)
-        return cls(np.kron([[1, 0], [-1 / f, 1]], np.eye(2)), name=f"lens, f = {f:g} m", law="(u, v)' = (u, v) − (x, y)/f (theory.md (24))")
+        law = "(u, v)' = (u, v) − (x, y)/f (theory.md (24))"
+        return cls(np.kron([[1, 0], [-1 / f, 1]], np.eye(2)), name=f"lens, f = {f:g} m", law=law)
 
     @classmethod
     def rotation(cls, angle: float) -> Map:
@@ -106,9 +107,10 @@ class Map:
 
     @classmethod
     def outgoing(cls, angle: float) -> Map:
-        """From the tangent plane to the central ray, which leaves at the angle θ₁ in radians: −θ₀ for a mirror. Of the order of `incidence`."""
+        """From the tangent plane to the central ray, which leaves at the angle θ₁ in radians: −θ₀ for a mirror. As exact as `incidence`."""
         a = _angle(angle)
-        return cls(np.diag([math.cos(a), 1, 1, 1]), np.array([0, 0, -a, 0]), f"outgoing {a:g} rad", "x = s cos θ₁, θ' = θ − θ₁ (Eq. 10, corrected)")
+        law = "x = s cos θ₁, y = t, θ' = θ − θ₁, φ' = φ (Eq. 10, corrected)"
+        return cls(np.diag([math.cos(a), 1, 1, 1]), np.array([0, 0, -a, 0]), f"outgoing {a:g} rad", law)
 
     @classmethod
     def curvature(cls, curvature: ArrayLike, angle: float = 0.0) -> Map:
