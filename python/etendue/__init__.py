@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
+from etendue import operators
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
@@ -56,6 +57,7 @@ __all__ = [
     "import_scene",
     "measure",
     "merge",
+    "operators",
     "photons",
     "predict",
     "probe",

@@ -20,8 +20,9 @@ from etendue.stages import Measurement, Prediction, compare_with
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
+Radiance = Callable[[Floats, Floats, Floats, Floats], ArrayLike]
 Function = Callable[..., ArrayLike]
-PlaneTheory = Union[ArrayLike, Mapping[str, Any], Function]
+PlaneTheory = Union[ArrayLike, Mapping[str, Any], Radiance]
 """The theory of a plane: slices [azimuth, rho, nu]; named arrays and functions; or a function radiance(x, y, u, v)."""
 
 COMPLEX = ("slices", "replicates", "derivatives")
