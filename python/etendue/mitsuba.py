@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from etendue import types
+from etendue.profiles import half_width, height
 from etendue.progress import Progress, told
 from etendue.rays import Spectrum, spectrum
 from etendue.worlds import ProbedPlane
@@ -273,15 +274,9 @@ class _Profile:
     """Draws numbers nearly in proportion to a profile, from numbers that are uniform in [0, 1)."""
 
     def __init__(self, profile: Any) -> None:
-        ((kind, value),) = dict(profile).items()
-        half: float = value["cut"] if kind == "Gaussian" else value
-        self.edges: Floats = half * np.linspace(-1, 1, CELLS + 1)
+        self.edges: Floats = half_width(profile) * np.linspace(-1, 1, CELLS + 1)
         t = 0.5 * (self.edges[1:] + self.edges[:-1])
-        if kind == "Hann":
-            height = np.cos(0.5 * np.pi * t / half) ** 2
-        else:
-            height = np.exp(-np.pi * (t / value["width"]) ** 2) if kind == "Gaussian" else np.ones(CELLS)
-        self.sums: Floats = np.concatenate([[0.0], np.cumsum(height)])
+        self.sums: Floats = np.concatenate([[0.0], np.cumsum(height(profile, t))])
         self.sums /= self.sums[-1]
 
     def draw(self, uniform: Floats) -> tuple[Floats, Floats]:

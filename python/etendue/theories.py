@@ -9,6 +9,7 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from etendue.profiles import half_width
 from etendue.rays import spectrum
 from etendue.result import Result
 from etendue.scene import Scene
@@ -81,7 +82,7 @@ def _replicates(scene: Scene, name: str, radiance: Radiance, points: int) -> NDA
     window = plane.get("window") or file["window"]
     frequencies = plane.get("frequencies") or file["frequencies"]
     profiles = [window["x"], window.get("y") or window["x"], window["u"], window.get("v") or window["u"]]
-    half = np.array([_half_width(profile) for profile in profiles])
+    half = np.array([half_width(profile) for profile in profiles])
     sequence = np.arange(points)[:, None] * STEPS
     random = np.random.default_rng(1)
 
@@ -97,8 +98,3 @@ def _replicates(scene: Scene, name: str, radiance: Radiance, points: int) -> NDA
         return spectrum(x, y, u, v, weight, window=window, frequencies=frequencies, batches=3).slices
 
     return np.array([one() for _ in range(REPLICATES)])
-
-
-def _half_width(profile: Any) -> float:
-    ((kind, value),) = profile.items()
-    return float(value["cut"] if kind == "Gaussian" else value)
