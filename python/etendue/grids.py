@@ -89,7 +89,8 @@ class GridSpectrum:
         if not self.replicated:
             noise = self.slices_sigma**2
             value = of(abs(slices) ** 2 - noise)
-            return value, np.std([of(abs(one) ** 2 - noise) for one in estimates], 0, ddof=1) if count else 0 * value
+            # A draw has noise twice.
+            return value, np.std([of(abs(one) ** 2 - 2 * noise) for one in estimates], 0, ddof=1) if count else 0 * value
         total, squares = estimates.sum(0), (abs(estimates) ** 2).sum(0)
         without = [(abs(total - one) ** 2 - squares + abs(one) ** 2) / ((count - 1) * (count - 2)) for one in estimates]
         spread = np.std([of(power) for power in without], 0)

@@ -136,7 +136,7 @@ def calibration():
     truth = sum(np.cos(2 * np.pi * k * (x[:, None] - d * u) + p) for d, k, p in waves)
     arguments = {"x": x, "u": u, "window": {"x": {"Hann": 0.8}, "u": {"Hann": 0.4}}, "frequencies": {"rho": {"max": 9}, "nu": {"max": 60}}}
     exact = etendue.grid_spectrum(truth, **arguments).wedge(1.4, 1.6)
-    for level in (0.5, 2.0, 8.0):
+    for level in (0.5, 1.0, 2.0):
         for kind in ("noise", "replicates"):
             found = []
             for _ in range(60):
