@@ -19,17 +19,20 @@ from etendue import operators
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
+from etendue.grids import GridSpectrum, grid_spectrum
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
 from etendue.theories import compare, theory
 from etendue.variance import SamplerVariance, Variance, VarianceCurve, variance
+from etendue.wedge import Wedge
 from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_scene, probe, render
 
 __all__ = [
     "CannotRun",
     "Difference",
+    "GridSpectrum",
     "ImportedScene",
     "LightField",
     "Measurement",
@@ -49,11 +52,13 @@ __all__ = [
     "Spectrum",
     "Variance",
     "VarianceCurve",
+    "Wedge",
     "__version__",
     "check",
     "compare",
     "difference",
     "figure",
+    "grid_spectrum",
     "import_scene",
     "measure",
     "merge",

@@ -12,6 +12,7 @@ from typing import Any, Union, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from etendue.profiles import STEPS, ProfileSampler
 from etendue.ranges import thread_count
 from etendue.rays import Spectrum
 from etendue.result import Result
@@ -37,8 +38,6 @@ STEP = 0.01
 """The step of the differences that give derivatives, as a share of a parameter."""
 BLOCK = 2**20
 """The largest number of rays or frequencies at which a function is evaluated at a time."""
-# Roberts (2018): multiples of powers of the root of x⁵ = x + 1, a sequence of low discrepancy for any number of points.
-STEPS = 1.1673039782614187 ** -np.arange(1.0, 5.0)
 
 
 def theory(scene: Scene, planes: Mapping[str, PlaneTheory], *, points: int = FIRST, threads: int | None = None) -> Prediction:
@@ -69,8 +68,8 @@ def compare(
     """Compares a measurement with a prediction, and returns the verdict.
 
     `prediction` is a prediction of Étendue, by default that of the scene, or a theory of the user: for each plane, what `theory` takes; or
-    an NPZ file of arrays PLANE/ARRAY. A `Spectrum` of rays has one plane, "rays", and needs a theory of the user. The points of functions are doubled until the error of their slices is at most 0.3 of the noise, or
-    until there are 2²⁰.
+    an NPZ file of arrays PLANE/ARRAY. A `Spectrum` of rays has one plane, "rays", and needs a theory of the user. The points of functions
+    are doubled until the error of their slices is at most 0.3 of the noise, or until there are 2²⁰.
     """
     if isinstance(prediction, (str, os.PathLike)):
         with np.load(prediction) as file:
@@ -226,12 +225,12 @@ class _Sums:
 
 class _Radiance(_Sums):
     def added(self, places: Floats, setting: Mapping[str, float]) -> Complexes:
-        half = np.array([_half_width(self.window[name]) for name in "xyuv"])
-        rays = [np.ascontiguousarray(column) for column in ((2 * places - 1) * half).reshape(-1, 4).T]
+        draws = [ProfileSampler(self.window[name]).draw(places[..., i].ravel()) for i, name in enumerate("xyuv")]
+        rays = [place for place, _ in draws]
         # The function may change its arguments.
         values = self.checked(self.function(*(column.copy() for column in rays), **setting), rays[0].shape, "buif")
         # A batch holds the mean over all batches.
-        weight = values * (np.prod(2 * half) / REPLICATES)
+        weight = values / (np.prod([density for _, density in draws], axis=0) * REPLICATES)
         batch = np.repeat(np.arange(REPLICATES, dtype=np.uint32), places.shape[1])
         return self.run.sums(self.plane, [*rays, weight], batch, REPLICATES, self.threads)
 
@@ -257,8 +256,3 @@ class _Spectrum(_Sums):
                 values = self.checked(self.function(*frequencies, **setting), frequencies[0].shape, "buifc")
                 total += weights[first : first + block] @ values
         return sums.reshape(self.shape)
-
-
-def _half_width(profile: Any) -> float:
-    ((kind, value),) = profile.items()
-    return float(value["cut"] if kind == "Gaussian" else value)

@@ -128,7 +128,7 @@ def test_spectra_of_rays(behind_hole):
         result = etendue.compare(found, {"rays": lambda *at: factor * radiance(*at) / scale})
         assert result.verdict == verdict
         assert not result.summary["inquiries"]
-    assert "multiplied by 0.9" in "".join(result["rays"].report["warnings"])
+    assert re.search(r"multiplied by 0\.(8[89]|9[0-3])", "".join(result["rays"].report["warnings"]))
     assert result.summary["photons"] == 200_000
     with pytest.raises(TypeError, match="needs a theory"):
         etendue.compare(found)
