@@ -12,9 +12,9 @@ sections are those of Durand et al. 2005.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, Protocol, Union
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 from etendue.lobes import Lobe
 from etendue.ranges import finite, real, whole
 from etendue.theories import Radiance
+
+if TYPE_CHECKING:
+    from etendue._etendue import Run
+    from etendue.scene import Scene
 
 __all__ = ["Chain", "Light", "Lobe", "Map", "Mask", "Operator", "Warp"]
 
@@ -316,6 +320,36 @@ class Chain:
         if not callable(self.light) or not all(callable(getattr(operator, "after", None)) for operator in self.operators):
             raise TypeError("a chain has a light, which is a function of rays, and a list of maps, masks and lobes")
 
+    @classmethod
+    def of_plane(cls, scene: Scene, plane: str) -> Chain:
+        """The chain from the light of a scene to a plane, between parallel planes or along mirrors, interfaces and lenses.
+
+        Its maps are those of Étendue's theory. Masks on the first leg are included; what else stands beside the path is not. Raises `KeyError`
+        if there is no such plane, and `ValueError` if no chain of these operators leads to it, or the light is no rectangle, disc or spot.
+        """
+        names = [known.name for known in scene.planes]
+        if plane not in names:
+            raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
+        run, index = scene._run, names.index(plane)  # pyright: ignore[reportPrivateUsage]
+        steps = run.chain(index)
+        if steps is None:
+            raise ValueError(f"plane {plane} has no chain of maps; allowed: one light, and only mirrors, interfaces and lenses before the plane")
+        operators: list[Operator] = []
+        for number, (words, kind, moved) in enumerate(steps):
+            name = " ".join(words.split()[1:])
+            if moved is not None:
+                matrix, offset, factor = moved
+                operators.append(Map(np.array(matrix), np.array(offset), name))
+                if abs(factor - 1) > 1e-12:  # rounding of a determinant
+                    operators.append(Mask.constant(factor))
+            elif kind == "mask":
+                operators.append(Mask.pattern(_transmission(run, index, number), name))
+            elif kind in ("slopes", "angles"):
+                operators.append(Mask.cosine(kind))
+            else:
+                raise ValueError(f"the chain of plane {plane} has a step that is no operator: {words}; compose it from `Lobe` and others")
+        return cls(_light(scene.file["light"]), operators)
+
     def radiance(self, x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike) -> Floats:
         """The radiance of rays after the last operator, as an array of their common shape; `etendue.compare` takes this function."""
         # The light may change its arguments, which masks and lobes use again.
@@ -346,6 +380,30 @@ class Chain:
         return "\n".join(f"{verb:8}  {name:{width}}  {law}".rstrip() for verb, name, law in rows)
 
 
+def _transmission(run: Run, plane: int, step: int) -> Pattern:
+    def transmission(x: Floats, y: Floats) -> Floats:
+        x, y = np.broadcast_arrays(x, y)
+        return run.transmittance(plane, step, x.ravel(), y.ravel()).reshape(x.shape)
+
+    return transmission
+
+
+def _light(file: Mapping[str, Any]) -> Light:
+    """The light of a scene file, about the start of the central ray."""
+    ((kind, of),) = file.items()
+    if kind not in ("Rectangle", "Disc", "Spot"):
+        raise ValueError(f"the light is a {kind}; allowed: Rectangle, Disc or Spot, because others have no radiance in (x, y, u, v)")
+    bulb: dict[str, Any] = of.get("bulb", {"Disc": of["radius"]} if kind == "Disc" else {"Square": of.get("size")})
+    ((shape, size),) = bulb.items()
+    scale, exponent = real("radiance", of["radiance"]), real("exponent", of.get("exponent", 0.0))
+    inside, name = _disc(size) if shape == "Disc" else _rectangle(size, 0.0)
+
+    def radiance(x: Floats, y: Floats, u: Floats, v: Floats) -> Floats:
+        return scale * inside(x, y) * (1 + u * u + v * v) ** (-0.5 * exponent)
+
+    return Light(f"{name}, radiance {scale:g}{f' cosⁿθ, n = {exponent:g}' if exponent else ''}", radiance)
+
+
 def _rays(x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike) -> Floats:
     """Rays as one new array [4, …]."""
     columns = [np.asarray(column) for column in (x, y, u, v)]
@@ -374,3 +432,7 @@ def _axis(axis: str) -> Callable[[Floats, Floats], Floats]:
 def _rectangle(size: Pair, center: Pair) -> tuple[Callable[[Floats, Floats], NDArray[np.bool_]], str]:
     (w, h), (a, b) = _pair("size", size), _pair("center", center)
     return lambda x, y: (abs(x - a) < 0.5 * w) & (abs(y - b) < 0.5 * h), f"rectangle {w:g} x {h:g} m"
+
+
+def _disc(radius: float) -> tuple[Callable[[Floats, Floats], NDArray[np.bool_]], str]:
+    return lambda x, y: x * x + y * y < radius**2, f"disc of radius {radius:g} m"

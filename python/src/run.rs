@@ -11,12 +11,17 @@ use etendue_pipeline::Silent;
 use etendue_pipeline::method::source;
 use etendue_spectrum::Watch;
 use etendue_store::{Failure, Method, predictions, theory};
+use etendue_theory::{ChainAction, ChainStep};
 use ndarray::{Array1, Array2};
-use numpy::{PyArray2, PyArray4, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArray4, PyReadonlyArray1};
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::Path;
 use std::sync::Arc;
+
+/// A map of rays as its matrix, its offset, and the factor by which it multiplies radiance.
+type RayMap = ([[f64; 4]; 4], [f64; 4], f64);
 
 /// A scene with its measurement settings.
 #[pyclass(frozen, module = "etendue._etendue")]
@@ -81,6 +86,45 @@ impl Run {
             (plane.name.clone(), class, steps, theory.reasons.clone())
         });
         planes.collect()
+    }
+
+    /// The steps of the chain to a plane after its light, with their words and, for a map of rays
+    /// z' = A z + t, A, t, and the factor of radiance; `None` if the plane has no such chain.
+    fn chain(&self, plane: usize) -> Option<Vec<(String, &'static str, Option<RayMap>)>> {
+        let steps = self.chain_steps(plane)?.into_iter();
+        let steps = steps.map(|step| {
+            let kind = match &step.action {
+                ChainAction::Map(_) => "map",
+                ChainAction::Mask(_) => "mask",
+                ChainAction::SlopeCosine => "slopes",
+                ChainAction::AngleCosine => "angles",
+                ChainAction::Other => "other",
+            };
+            let map = step.map().map(|map| {
+                let rays = map.rays();
+                (rays.matrix, rays.offset, map.factor / rays.det().abs())
+            });
+            (step.words, kind, map)
+        });
+        Some(steps.collect())
+    }
+
+    /// The transmittance of the mask at a step of a chain, at positions on the mask.
+    fn transmittance<'py>(
+        &self,
+        py: Python<'py>,
+        plane: usize,
+        step: usize,
+        x: PyReadonlyArray1<'py, f64>,
+        y: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let steps = self.chain_steps(plane).unwrap_or_default();
+        let Some(ChainAction::Mask(mask)) = steps.get(step).map(|step| &step.action) else {
+            return Err(PyIndexError::new_err("no such mask"));
+        };
+        let at = x.as_array().into_iter().zip(y.as_array());
+        let values = at.map(|(x, y)| mask.transmittance(*x, *y));
+        Ok(PyArray1::from_iter(py, values))
     }
 
     fn measure(
@@ -270,6 +314,13 @@ impl Run {
             predictions::unpacked(plane, bytes.as_bytes()).map_err(|f| raised(py, f))
         });
         unpacked.collect::<PyResult<_>>().map(Prediction)
+    }
+}
+
+impl Run {
+    fn chain_steps(&self, plane: usize) -> Option<Vec<ChainStep>> {
+        let scene = &self.0.scene;
+        self.0.theories[plane].chain_steps(scene, &scene.planes[plane])
     }
 }
 

@@ -224,6 +224,29 @@ def test_chains_agree_with_photons_and_faults_do_not(name):
         assert etendue.compare(measured, prediction, threads=1).verdict == verdict, str(chain)
 
 
+@pytest.mark.parametrize("name", ["slit", "bars", "grating", "concave mirror", "lens", "glass"])
+def test_chains_of_scenes_agree_with_photons(name):
+    scene = etendue.Scene(CHAINS[name][0], photons=2**16)
+    chain, measured = Chain.of_plane(scene, "p"), etendue.measure(scene, threads=1)
+    for tried, verdict in [(chain, "pass"), (chain.replace(0, Map.travel(0.4)), "fail"), (chain.replace(0), "fail")]:
+        assert etendue.compare(measured, theory(scene, {"p": tried.radiance}), threads=1).verdict == verdict, str(tried)
+
+
+def test_chains_of_scenes_that_are_none_are_refused():
+    for name, message in [("diffuse", "convolve  with the diffuse"), ("Phong", "no chain of maps")]:
+        with pytest.raises(ValueError, match=message):
+            Chain.of_plane(etendue.Scene(CHAINS[name][0]), "p")
+    scene = etendue.Scene(CHAINS["slit"][0])
+    with pytest.raises(KeyError, match="no plane 'q'; there are p"):
+        Chain.of_plane(scene, "q")
+    point = scene.file | {"light": {"Point": {"center": [0, 0, 0]}}}
+    with pytest.raises(ValueError, match="the light is a Point"):
+        Chain.of_plane(etendue.Scene(point), "p")
+    spot = scene.file | {"light": {"Spot": {"center": [0, 0, 0], "bulb": {"Disc": 0.1}, "exponent": 20}}}
+    chain = Chain.of_plane(etendue.Scene(spot), "p")[:0]
+    assert chain.radiance([0.0, 0.0, 0.2], 0, [0.0, 0.5, 0.0], 0) == pytest.approx([1, 1.25**-10, 0])
+
+
 def test_a_function_is_a_light_and_may_change_its_arguments():
     def light(x, y, u, v):
         x -= u

@@ -10,7 +10,7 @@ use etendue_compare::Class;
 use etendue_field::{VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::path::rays;
-use etendue_theory::{Observed, PathKind};
+use etendue_theory::{ChainStep, Observed, PathKind};
 
 /// The theory that applies to a plane, or the reasons why none does.
 #[derive(Clone, Debug)]
@@ -155,6 +155,18 @@ impl Applicability {
         rays::chain(self.theory.path_of(PathKind::Specular)?, print(scene))
     }
 
+    /// The steps after the light, of the chain to a plane that only the first light reaches by
+    /// parallel planes or specular surfaces. Returns `None` for any other plane.
+    #[must_use]
+    pub fn chain_steps(&self, scene: &Scene, plane: &VirtualPlane) -> Option<Vec<ChainStep>> {
+        match &self.theory {
+            _ if !scene.other_lights.is_empty() => None,
+            Theory::Parallel(_) => Some(chain(scene, plane).steps()),
+            Theory::Path(_) => Some(self.affine_chain(scene)?.steps),
+            Theory::None => None,
+        }
+    }
+
     /// Describes the steps that produce the spectrum of the plane, with one line for each step. The
     /// first lines are the chain and everything that no theory describes, and the last line is the
     /// window.
@@ -202,7 +214,8 @@ impl Applicability {
     /// Describes the maps of the first-order chain along a path.
     fn maps(&self, scene: &Scene, view: &Observed) -> Option<Vec<String>> {
         if view.kind() == PathKind::Specular {
-            return Some(self.affine_chain(scene)?.steps);
+            let steps = self.affine_chain(scene)?.steps;
+            return Some(steps.into_iter().map(|step| step.words).collect());
         }
         Some(etendue_theory::path::chain(view)?.steps)
     }

@@ -67,6 +67,7 @@ mod quadrature;
 mod reference;
 pub mod shading;
 mod sky;
+mod step;
 #[cfg(test)]
 mod testing;
 mod words;
@@ -83,4 +84,5 @@ pub use path::{Observed, PathKind};
 pub use plane::Plane;
 pub use predicted::{NetMean, Predicted};
 pub use shading::{g_hat, g_hat_3d};
+pub use step::{ChainAction, ChainStep};
 pub use work::PredictionWork;

@@ -1,5 +1,7 @@
 //! Textual descriptions of chains.
 
+use crate::geometry::AffineMap;
+use crate::step::{ChainAction, ChainStep};
 use crate::words::{self, formula};
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Image, Light, Rectangle, Shape, tidy};
@@ -8,10 +10,16 @@ impl Chain {
     /// Describes the chain as text, with one line for each step.
     #[must_use]
     pub fn describe(&self) -> Vec<String> {
-        let steps = self.operators.iter().map(Operator::describe);
+        let steps = self.steps().into_iter().map(|step| step.words);
         std::iter::once(self.source.describe())
             .chain(steps)
             .collect()
+    }
+
+    /// The steps of the chain after its light.
+    #[must_use]
+    pub fn steps(&self) -> Vec<ChainStep> {
+        self.operators.iter().map(Operator::step).collect()
     }
 }
 
@@ -62,6 +70,18 @@ fn picture(image: &Image, [a, b]: [&str; 2]) -> String {
 }
 
 impl Operator {
+    fn step(&self) -> ChainStep {
+        let action = match self {
+            Self::Travel { distance, .. } => {
+                ChainAction::Map(AffineMap::travel(*distance).spectrum_map())
+            }
+            Self::Visibility { mask, .. } => ChainAction::Mask(mask.clone()),
+            Self::Cosine { .. } => ChainAction::SlopeCosine,
+            Self::Diffuse { .. } => ChainAction::Other,
+        };
+        ChainStep::new(self.describe(), action)
+    }
+
     fn describe(&self) -> String {
         match self {
             Self::Travel { from, to, distance } => {

@@ -5,6 +5,7 @@ use crate::geometry::{AffineMap, Edition, Matrix, SpectrumMap};
 use crate::obstacle::LegRay;
 use crate::path::{Observed, PathMask, PathSurface, PathSystem};
 use crate::plane::Plane;
+use crate::step::{ChainAction, ChainStep};
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
@@ -16,11 +17,9 @@ pub struct AffineChain {
     /// all maps and of (n₂/n₁)² over all refractions, because a refraction multiplies radiance by
     /// (n₂/n₁)².
     pub map: SpectrumMap<4>,
-    /// The maps of the chain, in the order of propagation from the light.
-    pub maps: Vec<SpectrumMap<4>>,
-    /// Descriptions of the steps in the order of propagation. Steps inside the light and inside
-    /// the surface of the plane are omitted.
-    pub steps: Vec<String>,
+    /// The steps in the order of propagation. Steps inside the light and inside the surface of the
+    /// plane are omitted.
+    pub steps: Vec<ChainStep>,
     /// Distances from the last surface at which rays that left the light parallel to each other
     /// meet, in metres and in ascending order. The distance of a virtual focus behind the surface
     /// is negative. The list has at most two distances. If the plane of incidence is a principal
@@ -43,7 +42,6 @@ pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
     let hits = system.hits()?;
     let mut walk = Walk {
         print,
-        maps: Vec::new(),
         steps: Vec::new(),
         frame: Frame::IDENTITY,
         at: "light".into(),
@@ -87,11 +85,12 @@ pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
             _ => walk.arriving_surface(plane),
         }
     }
+    let map = walk.map();
+    let obstacles = system.obstacles.iter().map(words::obstacle);
     walk.steps
-        .extend(system.obstacles.iter().map(words::obstacle));
+        .extend(obstacles.map(|words| ChainStep::new(words, ChainAction::Other)));
     Some(AffineChain {
-        map: walk.map(),
-        maps: walk.maps,
+        map,
         steps: walk.steps,
         foci,
         first_leg,
@@ -102,8 +101,7 @@ pub fn chain(view: &Observed, print: Edition) -> Option<AffineChain> {
 #[derive(Clone)]
 struct Walk {
     print: Edition,
-    maps: Vec<SpectrumMap<4>>,
-    steps: Vec<String>,
+    steps: Vec<ChainStep>,
     /// The frame of the current leg. Its origin is the start of the leg or the current position
     /// along the leg.
     frame: Frame,
@@ -113,13 +111,13 @@ struct Walk {
 
 impl Walk {
     fn map(&self) -> SpectrumMap<4> {
-        let all = self.maps.iter();
+        let all = self.steps.iter().filter_map(ChainStep::map);
         all.fold(identity(), |map, next| map.then(next))
     }
 
     fn step(&mut self, map: &SpectrumMap<4>, words: String) {
-        self.maps.push(*map);
-        self.steps.push(words);
+        self.steps
+            .push(ChainStep::new(words, ChainAction::Map(*map)));
     }
 
     fn travel(&mut self, distance: f64, to: &str) {
@@ -135,7 +133,9 @@ impl Walk {
         let mut travelled = 0.0;
         for PathMask { distance, mask, .. } in system.masks_before(first_leg) {
             self.travel(distance - travelled, "mask");
-            self.steps.push(words::mask("", mask));
+            let words = words::mask("", mask);
+            self.steps
+                .push(ChainStep::new(words, ChainAction::Mask(mask.clone())));
             travelled = *distance;
         }
         travelled
@@ -295,8 +295,9 @@ impl Walk {
             self.curvature(shape, incidence.theta0);
         }
         if plane.quantity == Quantity::DifferentialIrradiance {
+            let words = "multiply  by the cosine, cos⁺ θ cos² φ";
             self.steps
-                .push("multiply  by the cosine, cos⁺ θ cos² φ".into());
+                .push(ChainStep::new(words, ChainAction::AngleCosine));
         }
         if plane.orientation == Orientation::Mirrored {
             self.mirror();
