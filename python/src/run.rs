@@ -40,14 +40,20 @@ impl Run {
         method: &str,
     ) -> PyResult<Self> {
         let source = scene.source(&set)?;
-        let methods = [Method::Photons, Method::Backward, Method::Given];
-        let named = methods.into_iter().find(|known| known.name() == method);
-        let method = named.unwrap_or(Method::Photons);
-        let run = etendue_pipeline::Run::read(&source, method, |run| {
+        let traced = if method == Method::Backward.name() {
+            Method::Backward
+        } else {
+            Method::Photons
+        };
+        let run = etendue_pipeline::Run::read(&source, traced, |run| {
             run.photons = photons.unwrap_or(run.photons);
             run.seed = seed.unwrap_or(run.seed);
         });
-        let run = run.map_err(|failure| raised(py, failure))?;
+        let mut run = run.map_err(|failure| raised(py, failure))?;
+        if method == Method::Given.name() {
+            // The rays come from Python, and not from the light of this scene.
+            run.method = Method::Given;
+        }
         Ok(Self(Arc::new(run)))
     }
 

@@ -12,12 +12,12 @@ mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
 pub(crate) use first::{CompletionsArgs, ManArgs, NewArgs, SCENES};
-pub(crate) use rays::RaysArgs;
+pub(crate) use rays::{RaysArgs, SpectrumArgs};
 pub(crate) use run::{
     CheckArgs, CompareArgs, ConvergeArgs, DiffArgs, Expect, ExportArgs, MeasureArgs, PredictArgs,
     RunArgs, SchemaArgs, SplitArgs,
 };
-pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
+pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs, WorkArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
 pub(crate) use variance::{VarianceArgs, files, samplers};
 #[cfg(feature = "worlds")]
@@ -93,6 +93,8 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Inspect a ray file or convert it to another format.
     Rays(RaysArgs),
+    /// Measure the spectrum of the rays of a file.
+    Spectrum(SpectrumArgs),
     /// Print the JSON schema of scene files, or a page of all fields.
     Schema(SchemaArgs),
     /// Print a script that completes commands in a shell.
@@ -124,7 +126,10 @@ const GROUPS: [(&str, &[&str]); 4] = [
         "Scenes of other programs",
         &["import", "render", "probe", "export"],
     ),
-    ("Files and help", &["rays", "schema", "completions", "man"]),
+    (
+        "Files and help",
+        &["rays", "spectrum", "schema", "completions", "man"],
+    ),
 ];
 
 /// The list of the commands for the help text, in groups.

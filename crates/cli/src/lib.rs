@@ -29,6 +29,7 @@ mod rays;
 mod report;
 mod run;
 mod schema;
+mod spectrum;
 mod split;
 mod sweep;
 mod threads;
@@ -80,6 +81,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         #[cfg(feature = "worlds")]
         Command::World(command) => worlds::run(&command),
         Command::Rays(args) => rays::rays(&args),
+        Command::Spectrum(args) => spectrum::spectrum(&args),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

@@ -3,14 +3,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{loud, passes, scene};
+use crate::common::{array, fails, json, loud, passes, scene};
 use etendue_compare::{Verdict, compare};
-use etendue_field::Light;
+use etendue_field::{Complex, Light};
 use etendue_predict::{Applicability, predict, test_of};
 use etendue_rayfile::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use etendue_scene::{Scene, SceneError, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
+use ndarray::{Array3, Array4, Axis};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -88,6 +89,41 @@ fn resolved(folder: &Path, edits: &[(&str, &str)]) -> Result<Scene, SceneError> 
         folder,
         u64::MAX,
     )
+}
+
+/// The sum over all rays of a measured file, each once, and its prediction, which is a plain sum.
+#[test]
+fn a_spectrum_counts_each_ray_once() {
+    let folder = folder();
+    let folder = folder.path();
+    let spectrum = |out: &str, file: &str, distance: f64| {
+        let window =
+            "--set window.x=Hann(0.01) --set window.u=Hann(0.5) --set frequencies.nu.max=9";
+        let at = format!("--set planes.0.at=Distance({distance}) --set frequencies.rho.max=200");
+        passes(folder, format!("spectrum {file} {window} {at} --out {out}"))
+    };
+    let said = spectrum("a", "led.tm25ray", 0.02);
+    assert!(String::from_utf8_lossy(&said.stdout).contains("rays in the window"));
+    let measured = |out: &str| -> Array4<Complex> {
+        array(&folder.join(out).join("rays/batches.npz"), "slices")
+    };
+    let scene = &json(&folder.join("a/measurement.json"))["scene_file"];
+    fs::write(folder.join("scene.json"), scene.to_string()).unwrap();
+    passes(folder, "predict scene.json --npz --out b");
+    let predicted: Array3<Complex> = array(&folder.join("b/predictions.npz"), "rays/slices");
+    let apart = |out: &str| {
+        let mean = measured(out).mean_axis(Axis(0)).unwrap();
+        let norm = |of: &Array3<Complex>| of.iter().map(|c| c.norm_sqr()).sum::<f64>().sqrt();
+        norm(&(mean - &predicted)) / norm(&predicted)
+    };
+    // The error of the fast transform is 3·10⁻⁷ of the largest value.
+    assert!(apart("a") < 1e-6);
+    spectrum("c", "led.tm25ray", 0.021);
+    assert!(apart("c") > 1e-2);
+    fails(folder, "spectrum led.npy --out d", 2);
+    passes(folder, "spectrum led.npy --flux 1 --out d");
+    fails(folder, "spectrum none.mcpl --out e", 2);
+    assert!(!folder.join("e").exists());
 }
 
 /// Compares the photons of the scene `traced` with the prediction of the scene `predicted`; returns

@@ -14,6 +14,7 @@ mod checkpoint;
 pub mod covariance;
 mod enough_photons;
 pub mod field;
+mod file_rays;
 mod follower;
 mod inquiry;
 mod judge;

@@ -1,5 +1,6 @@
 //! Provides the source of photons for each method of measurement.
 
+use crate::file_rays::FileRays;
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
@@ -7,28 +8,30 @@ use etendue_trace::{AllLights, Backward, Tracer, finds};
 
 /// The source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
-    let given = || Failure::bad_input("rays that were given cannot be traced again");
     if !scene.other_lights.is_empty() {
         return Ok(match method {
             Method::Photons => Box::new(AllLights::photons(scene)),
             Method::Backward => Box::new(AllLights::backward(scene).map_err(Failure::bad_input)?),
             Method::Even => Box::new(AllLights::with_uniform_emission(scene)),
-            Method::Given => return Err(given()),
+            Method::Given => {
+                let what = "given rays are the light of one file; allowed: no further lights";
+                return Err(Failure::bad_input(what));
+            }
         });
     }
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
         Method::Even => Box::new(Tracer::with_uniform_emission(scene)),
-        Method::Given => return Err(given()),
+        Method::Given => Box::new(FileRays::new(scene)?),
     })
 }
 
 /// Fails, before any file is written, if a scene cannot be measured by `method`.
 pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
-        Method::Backward => source(scene, method).map(drop),
-        Method::Photons | Method::Even | Method::Given => Ok(()),
+        Method::Backward | Method::Given => source(scene, method).map(drop),
+        Method::Photons | Method::Even => Ok(()),
     }
 }
 

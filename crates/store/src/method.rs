@@ -12,7 +12,8 @@ pub enum Method {
     Backward,
     /// Photons that are not aimed at windows. They are used to test other methods.
     Even,
-    /// Rays that the user gives. Étendue does not trace them, so no other tracer can judge them.
+    /// Rays that the user gives, each once. Étendue does not trace them, so no other tracer can
+    /// judge them.
     Given,
 }
 

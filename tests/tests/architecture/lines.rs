@@ -13,8 +13,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4164,
-        "`compare --theory`, `--save explorer`, and the words on noise that pipeline had",
+        4339,
+        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had",
     ),
     (
         "compare",
@@ -41,7 +41,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ("meshfile", 1657, 1658, "an empty line"),
     ("mpi", 77, 77, ""),
     ("paper", 3243, 3169, ""),
-    ("pipeline", 5436, 3066, ""),
+    ("pipeline", 5436, 3179, ""),
     (
         "predict",
         2917,
@@ -52,7 +52,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "python",
         1640,
-        1750,
+        1756,
         "theories of the user, as arrays and as functions; chains of scenes",
     ),
     ("rayfile", 2394, 2394, ""),
@@ -82,7 +82,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3628,
+        3629,
         "predictions of other programs are read, and written",
     ),
     ("studies", 4009, 4009, ""),
@@ -104,7 +104,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        67_993,
+        68_029,
         "conventions that are mistaken are planted, and found",
     ),
 ];

@@ -45,7 +45,7 @@ const MAY_USE: &[(&str, &str)] = &[
     ("store", "compare field rayfile scene spectrum"),
     (
         "pipeline",
-        "compare field predict rayfile scene spectrum store trace",
+        "compare field predict rayfile scene spectrum store theory trace",
     ),
     (
         "report",
