@@ -18,8 +18,11 @@ from importlib.metadata import version
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
+from etendue.images import TwoSample, two_sample
+from etendue.phase_space import MTF, PhaseSpace, mtf, phase_space
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
+from etendue.sampling import ChiSquare, Furnace, chi_square, furnace
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
 from etendue.theories import compare, theory
@@ -28,10 +31,14 @@ from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_sc
 
 __all__ = [
     "CannotRun",
+    "ChiSquare",
     "Difference",
+    "Furnace",
     "ImportedScene",
     "LightField",
+    "MTF",
     "Measurement",
+    "PhaseSpace",
     "Photons",
     "Picture",
     "Plane",
@@ -46,16 +53,21 @@ __all__ = [
     "SceneError",
     "Slices",
     "Spectrum",
+    "TwoSample",
     "Variance",
     "VarianceCurve",
     "__version__",
     "check",
+    "chi_square",
     "compare",
     "difference",
     "figure",
+    "furnace",
     "import_scene",
     "measure",
     "merge",
+    "mtf",
+    "phase_space",
     "photons",
     "predict",
     "probe",
@@ -64,6 +76,7 @@ __all__ = [
     "spectrum",
     "sweep",
     "theory",
+    "two_sample",
     "variance",
 ]
 
