@@ -235,9 +235,9 @@ class MTF:
 def mtf(spectra: Spectrum | Plane | Sequence[Spectrum | Plane], *, along: Literal["rho", "nu"] = "rho") -> MTF:
     """The modulation transfer function of light at a plane: |S| / |S(0)| over rho at nu = 0, or over nu at rho = 0.
 
-    `spectra` is a `Spectrum` or a plane of a `Result` (its measurement); or at least 4 of them, of independent rays with the same
-    window and frequencies, which are added. If the light is the image of a point or of a line, the curve over rho is the MTF of the system times the
-    window: S is the spectrum of the light times the window, so window and light are convolved in frequency. Nothing is divided out.
+    `spectra` is a `Spectrum` or a plane of a `Result` (its measurement); or at least 4 of them, of independent rays with the same window
+    and frequencies, which are added. If the light is the image of a point or of a line, the curve over rho is the MTF of the system times
+    the window: S is the spectrum of the light times the window, so window and light are convolved in frequency. Nothing is divided out.
 
     Raises `ValueError` if `along` is another word, if spectra have different frequencies, or if there is no light.
     """

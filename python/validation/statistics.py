@@ -51,7 +51,8 @@ def image(random, batches, scale=1.0, kind="normal", pixels=100):
 
 
 def two_sample():
-    print("## `two_sample`\n\nImages have 100 pixels with a noise of 30 % per batch. Fireflies are in 2 % of the pixels, and their law has no variance.\n")
+    print("## `two_sample`\n\nImages have 100 pixels with a noise of 30 % per batch. "
+        "Fireflies are in 2 % of the pixels, and their law has no variance.\n")
     rows = []
     for name, kind, a, b, noise in [
         ("8 + 8 batches", "normal", 8, 8, 1),
@@ -129,6 +130,7 @@ def chi_square():
         rows.append((other, f"{predicted(other, found[0].dof):.3f}", rate([one.p <= LEVEL for one in found])))
     table(["exponent of the density", "power", "rate of p ≤ 1 %"], rows)
     sample, density = lobe(30)
+    turned = math.asin(0.6) + math.pi / 90
 
     def spiked(random, n):
         return np.where(random.random(n)[:, None] < 0.02, [0.0, 0.0, 1.0], sample(random, n))
@@ -139,7 +141,7 @@ def chi_square():
         ("density has 2 % too much", sample, lambda points: 1.02 * density(points)),
         ("2 % of the samples are a delta function", spiked, density),
         ("the same, and the density lacks 2 %: no fault", spiked, lambda points: 0.98 * density(points)),
-        ("the lobe is turned by 2°", sample, lobe(30, (math.sin(math.asin(0.6) + math.pi / 90), 0, math.cos(math.asin(0.6) + math.pi / 90)))[1]),
+        ("the lobe is turned by 2°", sample, lobe(30, (math.sin(turned), 0, math.cos(turned)))[1]),
     ]:
         rows.append((name, rate([etendue.chi_square(draw, pdf, seed=seed, **keys).p <= LEVEL for seed in range(DRAWS // 10)])))
     table(["fault", "rate of p ≤ 1 %"], rows)
@@ -180,7 +182,10 @@ def furnace():
     ]
     table(["number", "within 1 σ", "2 σ"], rows)
     faults = [(1.1, "gain"), (0.9, "loss")]
-    rows = [(s, k, rate([getattr(etendue.furnace(pair(s), samples=1000, seed=i), k)[1] <= LEVEL for i in range(DRAWS // 10)])) for s, k in faults]
+    rows = []
+    for scale, name in faults:
+        found = [etendue.furnace(pair(scale), samples=1000, seed=seed) for seed in range(DRAWS // 10)]
+        rows.append((scale, name, rate([getattr(one, name)[1] <= LEVEL for one in found])))
     table(["weights times", "p of", "rate of p ≤ 1 %"], rows)
 
 
@@ -201,7 +206,8 @@ def rays(random, n, kind):
 
 
 def phase_space():
-    print("## `phase_space`\n\n20,000 rays of a light A = 0.2 m × 0.1 m into a cone of 0.3 rad (étendue A π sin²θ), and of a Gaussian beam.\n")
+    print("## `phase_space`\n\n20,000 rays of a light A = 0.2 m × 0.1 m into a cone of 0.3 rad "
+        "(étendue A π sin²θ), and of a Gaussian beam.\n")
     rows = []
     for kind in ("cone", "gaussian"):
         found = []
@@ -230,7 +236,8 @@ def phase_space():
 
 
 def mtf():
-    print("## `mtf`\n\nA Gaussian (σ = 0.05 m) and a box (0.2 m), each times a box window that does not cut them; 2,000 rays in each of 8 spectra.\n")
+    print("## `mtf`\n\nA Gaussian (σ = 0.05 m) and a box (0.2 m), each times a box window that does not cut them; "
+        "2,000 rays in each of 8 spectra.\n")
     rows = []
     for name in ("gaussian", "box"):
         many, one = [], []
@@ -255,6 +262,7 @@ def mtf():
 
 print("# Calibration of the tests in Python\n")
 print("Written by `python python/validation/statistics.py`.\n")
-print(f"Each row has {DRAWS:,} draws; power curves and faults have a quarter or a tenth of them, and rays a twentieth. Normal errors are within 1 σ at 68.3 %, within 2 σ at 95.4 %.\n")
+print(f"Each row has {DRAWS:,} draws; power curves and faults have a quarter or a tenth of them, and rays a twentieth. "
+    f"Normal errors are within 1 σ at 68.3 %, within 2 σ at 95.4 %.\n")
 for part in (two_sample, chi_square, furnace, phase_space, mtf):
     part()
