@@ -15,9 +15,11 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
+from etendue import operators
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
+from etendue.grids import GridSpectrum, grid_spectrum
 from etendue.images import TwoSample, two_sample
 from etendue.phase_space import MTF, PhaseSpace, mtf, phase_space
 from etendue.rays import Spectrum, spectrum
@@ -27,6 +29,7 @@ from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
 from etendue.theories import compare, theory
 from etendue.variance import SamplerVariance, Variance, VarianceCurve, variance
+from etendue.wedge import Wedge
 from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_scene, probe, render
 
 __all__ = [
@@ -34,6 +37,7 @@ __all__ = [
     "ChiSquare",
     "Difference",
     "Furnace",
+    "GridSpectrum",
     "ImportedScene",
     "LightField",
     "MTF",
@@ -56,6 +60,7 @@ __all__ = [
     "TwoSample",
     "Variance",
     "VarianceCurve",
+    "Wedge",
     "__version__",
     "check",
     "chi_square",
@@ -63,10 +68,12 @@ __all__ = [
     "difference",
     "figure",
     "furnace",
+    "grid_spectrum",
     "import_scene",
     "measure",
     "merge",
     "mtf",
+    "operators",
     "phase_space",
     "photons",
     "predict",

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from etendue import types
+from etendue.profiles import STEPS, ProfileSampler
 from etendue.progress import Progress, told
 from etendue.rays import Spectrum, spectrum
 from etendue.worlds import ProbedPlane
@@ -51,8 +52,6 @@ INTEGRATORS = {
 }
 """Integrators whose depth stands in their description, with the name in that description."""
 CHANNELS = {"red": 0, "green": 1, "blue": 2}
-CELLS = 256
-"""Number of cells in which positions and slopes are drawn, along each coordinate of a window."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +116,7 @@ def record(
     each = -(-int(rays) // batches)
     together = max(1, min(batches, LARGEST // each))
     frame = _Frame(plane)
-    profiles = [_Profile(plane.window.get(name) or plane.window[other]) for name, other in zip("xyuv", "xxuu")]
+    profiles = [ProfileSampler(plane.window.get(name) or plane.window[other]) for name, other in zip("xyuv", "xxuu")]
     numbers = np.random.default_rng(seed)
     shape = _first_surface(mi, loaded, frame) if plane.on_surface else None
     columns: list[Floats] = []
@@ -269,35 +268,10 @@ class _Frame:
         self.y: Floats = np.cross(self.d, self.x)
 
 
-class _Profile:
-    """Draws numbers nearly in proportion to a profile, from numbers that are uniform in [0, 1)."""
-
-    def __init__(self, profile: Any) -> None:
-        ((kind, value),) = dict(profile).items()
-        half: float = value["cut"] if kind == "Gaussian" else value
-        self.edges: Floats = half * np.linspace(-1, 1, CELLS + 1)
-        t = 0.5 * (self.edges[1:] + self.edges[:-1])
-        if kind == "Hann":
-            height = np.cos(0.5 * np.pi * t / half) ** 2
-        else:
-            height = np.exp(-np.pi * (t / value["width"]) ** 2) if kind == "Gaussian" else np.ones(CELLS)
-        self.sums: Floats = np.concatenate([[0.0], np.cumsum(height)])
-        self.sums /= self.sums[-1]
-
-    def draw(self, uniform: Floats) -> tuple[Floats, Floats]:
-        """The numbers, and their exact densities."""
-        cell = np.clip(np.searchsorted(self.sums, uniform, side="right") - 1, 0, CELLS - 1)
-        share, width = np.diff(self.sums)[cell], np.diff(self.edges)[cell]
-        return self.edges[cell] + width * (uniform - self.sums[cell]) / share, share / width
-
-
 def _even(shifts: Floats, each: int) -> Floats:
-    """Numbers [4, batches · each] that fill the unit cube of each batch evenly: a Kronecker sequence by the powers of the root of
-    g⁵ = g + 1, shifted at random for each batch."""
-    root = 1.1673039782614187
-    steps = root ** -np.arange(1.0, 5.0)
+    """Numbers [4, batches · each] that fill the unit cube of each batch evenly: a sequence, shifted at random for each batch."""
     counts = np.arange(each)[None, :, None]
-    drawn = (shifts[:, None, :] + counts * steps) % 1.0
+    drawn = (shifts[:, None, :] + counts * STEPS) % 1.0
     return drawn.reshape(-1, 4).T
 
 

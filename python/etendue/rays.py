@@ -15,6 +15,7 @@ from etendue.plot import plotted
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Scene
+from etendue.stages import Measurement
 
 Floats = NDArray[np.float64]
 
@@ -64,6 +65,11 @@ class Spectrum:
     """`bandwidth_rho` of the light less its mean in the window, which tells how fast the light changes. Sampling needs this bandwidth."""
     variation_nu: tuple[float, float] | None
     """`bandwidth_nu` of the light less its mean in the window."""
+    measurement: Measurement | None
+    """The batches of rays at the plane "rays", for `compare` with a theory; `None` in a pickled spectrum."""
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "measurement": None}
 
     @property
     def sample(self) -> Sample:
@@ -110,7 +116,7 @@ def spectrum(
     """
     rays = columns(x, y, u, v, weight)
     group, batches = groups(rays[0].size, batch, batches)
-    plane = Scene(_around(window, frequencies), name="rays")
+    plane = Scene(_around(window, frequencies), method="given", name="rays")
     with told(progress) as tell:
         found: dict[str, Any] = plane._run.spectrum(  # pyright: ignore[reportPrivateUsage]
             rays, group, batches, thread_count(threads), tell
@@ -119,6 +125,7 @@ def spectrum(
         raise ValueError("the power of these weights is beyond the largest number; allowed: weights below 1e100 or so")
     if found["in_window"] == 0:
         warnings.warn("no ray is inside the window: the spectrum is zero", stacklevel=2)
+    found["measurement"] = Measurement(plane, found["measurement"])
     return Spectrum(**found)
 
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Union, cast
+from typing import TYPE_CHECKING, Literal, Union, cast, get_args
 
 from etendue import types
 from etendue._etendue import Run
@@ -15,7 +15,8 @@ from etendue._etendue import Run
 if TYPE_CHECKING:
     from etendue._etendue import SceneArgument
 
-Method = Literal["photons", "backward"]
+Method = Literal["photons", "backward", "given"]
+"""Photons from the light, rays traced back from the windows, or rays that the user gives to `spectrum`, which are not traced."""
 Value = Union[bool, int, float, str, Sequence[float]]
 """The values to which a field can be set: a number, several numbers, or text as in a scene file, such as "Distance(1.5)"."""
 Source = Union[str, "os.PathLike[str]", types.Scene]
@@ -56,18 +57,17 @@ class Scene:
         name: str = "scene",
         folder: str | os.PathLike[str] = ".",
     ) -> None:
-        if method not in ("photons", "backward"):
+        if method not in get_args(Method):
             raise ValueError(f"method is {method!r}; allowed: 'photons' or 'backward'")
         fields = field_texts(set)
         count = None if photons is None else _whole(photons)
         seed = None if seed is None else _seed(seed)
-        backward = method == "backward"
         if isinstance(source, (str, os.PathLike)):
             self._folder = os.fspath(Path(source).absolute().parent)
-            self._run = Run.read(source, fields, count, seed, backward)
+            self._run = Run.read(source, fields, count, seed, method)
         else:
             self._folder = os.fspath(Path(folder).absolute())
-            self._run = Run.read((json.dumps(source), name, self._folder), fields, count, seed, backward)
+            self._run = Run.read((json.dumps(source), name, self._folder), fields, count, seed, method)
         self._method: Method = method
 
     @property

@@ -2,16 +2,16 @@
 
 use crate::arrays::Arrays;
 use crate::live::Live;
-use crate::outcome::cells;
+use crate::outcome::{self, cells};
 use etendue_compare::noise_dof;
-use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_field::{Complex, Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::Along;
 use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{
-    CrossPower, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
+    CrossPower, Measurement, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
 };
 use etendue_store::Failure;
-use ndarray::Array1;
+use ndarray::{Array1, Array4};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -25,7 +25,8 @@ pub(crate) struct Rays(Vec<Vec<Crossing>>);
 
 impl Rays {
     /// Creates rays from columns x, y, u, v and weight. Weights are multiplied by the number of
-    /// batches, so that the mean over batches is the sum over all rays.
+    /// batches, and by the number of rays of their batch, so that the mean over batches is the sum
+    /// over all rays.
     pub(crate) fn new(
         columns: &[PyReadonlyArray1<'_, f64>; 5],
         batch: &PyReadonlyArray1<'_, u32>,
@@ -66,14 +67,36 @@ impl Rays {
                 "batch {empty} of {batches} has no ray; allowed: at least one ray per batch"
             ));
         }
+        for own in &mut all {
+            let count = own.len() as f64;
+            own.iter_mut().for_each(|ray| ray.weight *= count);
+        }
         Ok(Self(all))
+    }
+
+    fn measured(&self, plane: &VirtualPlane, live: &Live) -> Measurement {
+        let batches = (0..self.0.len()).filter_map(|i| u32::try_from(i).ok());
+        let mut batches = batches.map(PartialBatch::new);
+        let all = self.0.iter().map(|batch| batch.len() as u64).sum();
+        let watch = live.trace(all, "rays");
+        measure_watched(self, std::slice::from_ref(plane), &mut batches, &watch).0
+    }
+
+    /// The sum of each batch times the number of batches, [batch, azimuth, ρ ≥ 0, ν].
+    pub(crate) fn sums(&self, plane: &VirtualPlane, live: &Live) -> Array4<Complex> {
+        let measured = self.measured(plane, live);
+        let [azimuths, rho, nu] = plane.grid.half_shape();
+        let mut sums = Array4::zeros((self.0.len(), azimuths, rho, nu));
+        for (mut sum, batch) in sums.outer_iter_mut().zip(measured.at_plane(0)) {
+            sum.assign(&batch.slices.half);
+        }
+        sums
     }
 }
 
 impl PhotonSource for Rays {
-    fn emitted(&self, _batch: u32) -> u64 {
-        // If one photon is emitted, the result of a batch is the sum over its rays.
-        1
+    fn emitted(&self, batch: u32) -> u64 {
+        self.0[batch as usize].len() as u64
     }
 
     fn emit(
@@ -99,6 +122,7 @@ pub(crate) struct Spectrum {
     /// Effective number of independent real numbers in the noise of the slices.
     noise_dof: Option<f64>,
     batches: usize,
+    measurement: Measurement,
     /// The slope and the bandwidths, with their names.
     numbers: [(&'static str, Option<Uncertain>); 5],
 }
@@ -109,11 +133,7 @@ pub(crate) fn spectrum(
     plane: &VirtualPlane,
     live: &Live,
 ) -> Result<Spectrum, Failure> {
-    let batches = (0..rays.0.len()).filter_map(|i| u32::try_from(i).ok());
-    let mut batches = batches.map(PartialBatch::new);
-    let all = rays.0.iter().map(|batch| batch.len() as u64).sum();
-    let watch = live.trace(all, "rays");
-    let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, &watch);
+    let measured = rays.measured(plane, live);
     let few = |error: estimate::TooFewBatches| Failure::bad_input(error);
     let power = CrossPower::new(&measured, 0).map_err(few)?;
     let grid = &plane.grid;
@@ -132,6 +152,7 @@ pub(crate) fn spectrum(
             noise_dof(&measured, 0).map_err(few)?
         },
         batches: rays.0.len(),
+        measurement: measured.clone(),
         numbers: [
             ("slope", power.statistic(|p| shear_slope(p, grid))),
             ("bandwidth_rho", along_rho(&power)),
@@ -165,6 +186,7 @@ impl Spectrum {
         all.set_item("in_window", self.in_window)?;
         all.set_item("noise_dof", self.noise_dof)?;
         all.set_item("batches", self.batches)?;
+        all.set_item("measurement", outcome::Measurement(self.measurement))?;
         for (name, number) in self.numbers {
             all.set_item(name, number.map(|n| (n.value, n.error)))?;
         }

@@ -1,17 +1,18 @@
 //! Scenes, with their measurements and predictions.
 
+use crate::arrays::Arrays;
 use crate::live::alive;
 use crate::outcome::{Measurement, Outcome, Prediction};
 use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
 use crate::scene::SceneArgument;
-use etendue_field::Crossing;
+use etendue_field::{Complex, Crossing, VirtualPlane};
 use etendue_pipeline::Silent;
 use etendue_pipeline::method::source;
 use etendue_spectrum::Watch;
 use etendue_store::{Failure, Method, predictions, theory};
-use ndarray::Array2;
-use numpy::{PyArray2, PyReadonlyArray1};
+use ndarray::{Array1, Array2};
+use numpy::{PyArray2, PyArray4, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::Path;
@@ -31,14 +32,12 @@ impl Run {
         set: Vec<(String, String)>,
         photons: Option<u64>,
         seed: Option<u64>,
-        backward: bool,
+        method: &str,
     ) -> PyResult<Self> {
         let source = scene.source(&set)?;
-        let method = if backward {
-            Method::Backward
-        } else {
-            Method::Photons
-        };
+        let methods = [Method::Photons, Method::Backward, Method::Given];
+        let named = methods.into_iter().find(|known| known.name() == method);
+        let method = named.unwrap_or(Method::Photons);
         let run = etendue_pipeline::Run::read(&source, method, |run| {
             run.photons = photons.unwrap_or(run.photons);
             run.seed = seed.unwrap_or(run.seed);
@@ -181,6 +180,39 @@ impl Run {
             spectrum(&rays, &run.scene.planes[0], live)
         })?;
         found.arrays(py)
+    }
+
+    /// The axes of a plane's slices, with ρ ≥ 0, and its window in JSON.
+    fn axes<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
+        let VirtualPlane { grid, window, .. } = &self.0.scene.planes[plane];
+        let azimuth = (0..grid.azimuths).map(|k| grid.azimuth(k)).collect();
+        let rho = grid.rho.values().split_off(grid.rho.half);
+        let axes = Arrays::new(py)
+            .add::<f64, _>("azimuth", azimuth)?
+            .add("rho", Array1::from(rho))?
+            .add("nu", Array1::from(grid.nu.values()))?
+            .finish();
+        let window = serde_json::to_string(window).unwrap_or_default();
+        axes.set_item("window", window)?;
+        Ok(axes)
+    }
+
+    /// Sums over a user's rays at a plane, for each batch, [batch, azimuth, ρ ≥ 0, ν].
+    fn sums<'py>(
+        &self,
+        py: Python<'py>,
+        plane: usize,
+        columns: [PyReadonlyArray1<'py, f64>; 5],
+        batch: PyReadonlyArray1<'py, u32>,
+        batches: u32,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray4<Complex>>> {
+        let rays = Rays::new(&columns, &batch, batches)?;
+        let run = Arc::clone(&self.0);
+        let sums = alive(py, threads, None, move |live| {
+            Ok(rays.sums(&run.scene.planes[plane], live))
+        })?;
+        Ok(PyArray4::from_owned_array(py, sums))
     }
 
     /// Returns the batches of a measurement as their numbers and their bytes.

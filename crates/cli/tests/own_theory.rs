@@ -113,6 +113,8 @@ fn damaged_theories_are_refused_by_name() {
     one_sided.index_axis_mut(Axis(1), 0).fill(Complex::ZERO);
     let mut infinite = receiver.clone();
     infinite[[0, 0, 0]] = Complex::from(f64::NAN);
+    let mut huge = receiver.clone();
+    huge[[0, 0, 0]] = Complex::from(1e200);
     let short = receiver.slice_axis(Axis(2), (1..).into()).to_owned();
     let single = receiver.clone().insert_axis(Axis(0));
     let axis = Array1::from(vec![Complex::from(1.0)]);
@@ -126,6 +128,7 @@ fn damaged_theories_are_refused_by_name() {
             "because radiance is real",
         ),
         (vec![("receiver/slices", infinite.into_dyn())], "not finite"),
+        (vec![("receiver/slices", huge.into_dyn())], "above 1e100"),
         (
             vec![("receiver/replicates", single.into_dyn())],
             "must be 3 to 1000",
@@ -140,7 +143,7 @@ fn damaged_theories_are_refused_by_name() {
                 ("receiver/slices", receiver.into_dyn()),
                 ("receiver/rho", axis.into_dyn()),
             ],
-            "'<f8'",
+            "its dtype is complex128; must be float64",
         ),
     ] {
         let output = compared(

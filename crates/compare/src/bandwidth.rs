@@ -10,13 +10,7 @@ use etendue_theory::shading::PlanarLobe;
 /// its energy. Returns `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
-    let lobe = match lobe {
-        Lobe::Phong { exponent } => PlanarLobe::Phong { exponent },
-        Lobe::Beckmann { roughness } => PlanarLobe::Beckmann { roughness },
-        Lobe::Ggx { roughness } => PlanarLobe::Ggx { roughness },
-        Lobe::Lambertian => return None,
-    };
-    Some(lobe.cutoff(BANDWIDTH_FRACTION))
+    Some(PlanarLobe::of(lobe)?.cutoff(BANDWIDTH_FRACTION))
 }
 
 /// The bandwidth along ν that was measured at plane `index`, and the error of this

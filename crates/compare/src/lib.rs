@@ -15,6 +15,7 @@ mod field;
 mod first_order;
 mod full_radial;
 mod heavy_rays;
+mod hint;
 mod lights;
 mod noise;
 mod plane;

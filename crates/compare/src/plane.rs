@@ -4,6 +4,7 @@ use crate::agreement::{Agreement, UNSEEN};
 use crate::first_order::FirstOrderReport;
 use crate::full_radial::FullRadialComparison;
 use crate::heavy_rays::too_few;
+use crate::hint::hint;
 use crate::noise::noise_dof;
 use crate::power::PowerReport;
 use crate::prediction::Prediction;
@@ -99,7 +100,12 @@ pub fn compare(
         replicates: replicates.as_ref(),
         predicted_radial: &predicted_radial,
     };
-    let report = sides.report(&sides.judged(test))?;
+    let mut report = sides.report(&sides.judged(test))?;
+    if report.exact_verdict() == Verdict::Fail && !test.accepts(report.p_value) {
+        let plane = (measurement, index);
+        let hint = hint(plane, &predicted, &prediction.replicates, &variance, test);
+        report.warnings.extend(hint);
+    }
     let measured_sigma = measured_variance.map(|variance| variance.mapv(f64::sqrt));
     let off_chain = prediction.first_order.as_ref().map(|chain| Slices {
         half: &estimate.mean.half - &chain.slices.half,

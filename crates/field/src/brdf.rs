@@ -113,6 +113,17 @@ impl Lobe {
         }
     }
 
+    /// The name of the lobe.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Lambertian => "Lambertian",
+            Self::Phong { .. } => "Phong",
+            Self::Beckmann { .. } => "Beckmann",
+            Self::Ggx { .. } => "GGX",
+        }
+    }
+
     /// The lobe's parameter and the name of the parameter.
     #[must_use]
     pub fn number_mut(&mut self) -> Option<(&'static str, &mut f64)> {

@@ -91,7 +91,7 @@ pub(crate) fn name_other_method(case: &MeasuredScene, planes: &mut [PlaneCompari
             continue;
         };
         let other = judge_of(case.method, &case.scene, &case.scene.planes[plane]);
-        if report.class == Class::Reference || other == Method::Even {
+        if report.class == Class::Reference || matches!(other, Method::Even | Method::Given) {
             continue;
         }
         // A scene that the other method cannot measure is no reason to fail.
@@ -187,6 +187,7 @@ fn reached_by_light(
     Ok(match method {
         Method::Photons => of_each(&AllLights::photons(scene), scene, plane),
         Method::Even => of_each(&AllLights::with_uniform_emission(scene), scene, plane),
+        Method::Given => Vec::new(),
         Method::Backward => {
             let lights = AllLights::backward(scene).map_err(Failure::bad_input)?;
             of_each(&lights, scene, plane)

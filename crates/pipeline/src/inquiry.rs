@@ -125,7 +125,7 @@ fn both_pass(
     if needed > rays && needed.is_finite() {
         let apart = percent(least.sqrt(), 3);
         format!(
-            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} or more {other} are needed (--photons)"
+            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} or more {other} are needed"
         )
     } else {
         format!("{cannot}, and the disagreement is within the noise; use more photons")

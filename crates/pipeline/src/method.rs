@@ -7,17 +7,20 @@ use etendue_trace::{AllLights, Backward, Tracer, finds};
 
 /// The source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
+    let given = || Failure::bad_input("rays that were given cannot be traced again");
     if !scene.other_lights.is_empty() {
         return Ok(match method {
             Method::Photons => Box::new(AllLights::photons(scene)),
             Method::Backward => Box::new(AllLights::backward(scene).map_err(Failure::bad_input)?),
             Method::Even => Box::new(AllLights::with_uniform_emission(scene)),
+            Method::Given => return Err(given()),
         });
     }
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
         Method::Even => Box::new(Tracer::with_uniform_emission(scene)),
+        Method::Given => return Err(given()),
     })
 }
 
@@ -25,17 +28,18 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
 pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
         Method::Backward => source(scene, method).map(drop),
-        Method::Photons | Method::Even => Ok(()),
+        Method::Photons | Method::Even | Method::Given => Ok(()),
     }
 }
 
 /// The method against which a measurement by `method` is tested at a plane. The returned
-/// method is as independent of `method` as the scene allows.
+/// method is as independent of `method` as the scene allows. Nothing tests rays that were given.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
         Method::Photons if finds_all(scene, plane) => Method::Backward,
         Method::Photons => Method::Even,
         Method::Backward | Method::Even => Method::Photons,
+        Method::Given => Method::Given,
     }
 }
 
@@ -51,7 +55,7 @@ fn finds_all(scene: &Scene, plane: &VirtualPlane) -> bool {
 /// `method` serve as the prediction.
 pub fn step(method: Method) -> String {
     let shared = match method {
-        Method::Photons | Method::Backward => "",
+        Method::Photons | Method::Backward | Method::Given => "",
         // At this plane, backward rays would not find the light.
         Method::Even => {
             "; after emission, the same code traces these rays and the photons, so the comparison does not detect errors in this code"

@@ -12,6 +12,8 @@ pub enum Method {
     Backward,
     /// Photons that are not aimed at windows. They are used to test other methods.
     Even,
+    /// Rays that the user gives. Étendue does not trace them, so no other tracer can judge them.
+    Given,
 }
 
 impl Method {
@@ -21,7 +23,7 @@ impl Method {
     pub fn keeps_ledger(self) -> bool {
         match self {
             Self::Photons | Self::Even => true,
-            Self::Backward => false,
+            Self::Backward | Self::Given => false,
         }
     }
 
@@ -32,6 +34,7 @@ impl Method {
             Self::Photons => "photons",
             Self::Backward => "backward",
             Self::Even => "even",
+            Self::Given => "given",
         }
     }
 
@@ -42,6 +45,7 @@ impl Method {
             Self::Photons => "photons",
             Self::Backward => "backward rays",
             Self::Even => "photons sent evenly",
+            Self::Given => "the given rays",
         }
     }
 }

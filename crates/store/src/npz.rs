@@ -194,8 +194,10 @@ impl NpzFile {
     /// The file with these bytes. Messages name the file as `path`.
     pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
-        let archive = ZipArchive::new(Cursor::new(bytes))
-            .map_err(|e| Failure::bad_input(format!("{}: {e}", path.display())))?;
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| {
+            let what = "no NPZ file, as numpy.savez writes it";
+            Failure::bad_input(format!("{}: {what}: {e}", path.display()))
+        })?;
         Ok(Self {
             path,
             archive,
@@ -259,7 +261,8 @@ impl NpzFile {
         let bytes = self.entry(name, self.limit(bytes))?;
         let (header, start) = self.header(name, &bytes)?;
         if header.descr != A::DESCR {
-            let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
+            let [is, must] = [&header.descr, A::DESCR].map(dtype);
+            let is = format!("its dtype is {is}; must be {must}");
             return Err(self.fault(name, is));
         }
         let data = &bytes[start..];
@@ -359,6 +362,9 @@ impl NpzFile {
 
     /// The first `limit` bytes of the NPY file `name` in the archive.
     fn entry(&mut self, name: &str, limit: usize) -> Result<Vec<u8>, Failure> {
+        if !self.has(name) {
+            return Err(self.fault(name, "is missing"));
+        }
         let mut bytes = Vec::new();
         let limit = u64::try_from(limit).unwrap_or(u64::MAX);
         self.archive
@@ -371,6 +377,21 @@ impl NpzFile {
             .map_err(|e| self.fault(name, e))?;
         Ok(bytes)
     }
+}
+
+/// NumPy's name of a type of numbers, such as complex64 for `<c8`; other types as they are written.
+fn dtype(descr: &str) -> String {
+    let kinds = [
+        ("<f", "float"),
+        ("<c", "complex"),
+        ("<i", "int"),
+        ("<u", "uint"),
+    ];
+    let named = kinds.iter().find_map(|(prefix, kind)| {
+        let bytes: u32 = descr.strip_prefix(prefix)?.parse().ok()?;
+        Some(format!("{kind}{}", bytes.checked_mul(8)?))
+    });
+    named.unwrap_or_else(|| format!("'{descr}'"))
 }
 
 /// The azimuths of slices.

@@ -8,7 +8,7 @@ use crate::npz::{Npz, NpzFile, Number, half_axes};
 use crate::predictions::stacked;
 use etendue_compare::{Class, PredictedParameter, Prediction};
 use etendue_field::{
-    Complex, Projection, ProjectionGrid, SliceGrid, Slices, VirtualPlane, percent,
+    Complex, Projection, ProjectionGrid, SliceGrid, Slices, VirtualPlane, modulus, percent,
 };
 use etendue_spectrum::PROJECTION_BINS;
 use ndarray::{Array1, Array3, ArrayD, ArrayViewD, Axis, Ix3, IxDyn};
@@ -31,6 +31,8 @@ const ARRAYS: [&str; 10] = [
 ];
 /// The largest number of replicates, and of parameters.
 const MAX_COUNT: u64 = 1000;
+/// Slices must be smaller, so that their powers are finite.
+const MAX_SLICE: f64 = 1e100;
 /// The largest relative difference between two arrays that are said to be equal.
 const SAME: f64 = 1e-9;
 
@@ -323,6 +325,10 @@ impl TheoryArrays<'_> {
 
     /// Slices from an array with the axes [azimuth, ρ, ν].
     fn folded(&self, array: &str, all: ArrayViewD<'_, Complex>) -> Result<Slices, Failure> {
+        if all.iter().any(|value| modulus(*value) >= MAX_SLICE) {
+            let what = format!("has numbers above {MAX_SLICE:.0e}");
+            return Err(self.file.fault(&self.name(array), what));
+        }
         let slices = Slices {
             grid: self.plane.grid,
             half: self.half(all.view()),

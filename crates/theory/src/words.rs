@@ -3,7 +3,7 @@
 use crate::geometry::Matrix;
 use crate::obstacle::Obstacle;
 use etendue_field::{
-    AngleTable, Fresnel, Grating, Hole, Lobe, Mask, Pattern, Reflectance, Shape, Term, Weight, tidy,
+    AngleTable, Fresnel, Grating, Hole, Mask, Pattern, Reflectance, Shape, Term, Weight, tidy,
 };
 
 /// Formats a number to six decimals, without trailing zeros.
@@ -115,12 +115,10 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
 /// outgoing angle. Each description begins with a verb.
 fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
-    let lobe = match brdf.lobe {
-        Lobe::Lambertian => "Lambertian".to_owned(),
-        Lobe::Phong { exponent } => format!("Phong, exponent {}", number(exponent)),
-        Lobe::Beckmann { roughness } => format!("Beckmann, roughness {}", number(roughness)),
-        Lobe::Ggx { roughness } => format!("GGX, roughness {}", number(roughness)),
-    };
+    let mut lobe = brdf.lobe.name().to_owned();
+    if let Some((name, value)) = brdf.lobe.clone().number_mut() {
+        lobe += &format!(", {name} {}", number(*value));
+    }
     let fresnel = match brdf.fresnel {
         Fresnel::White => None,
         Fresnel::Dielectric { index } => Some(number(index)),

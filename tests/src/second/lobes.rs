@@ -53,51 +53,70 @@ const GGX: &[&str] = &[
     "D to the power 3/2",
 ];
 
+/// A kind of lobe: the names of its checks for the tracers and for theory, the planted faults, the
+/// tolerance with its reason, and a random lobe.
+type Row = (
+    [&'static str; 2],
+    &'static [&'static str],
+    (f64, &'static str),
+    fn(&mut Dice) -> Lobe,
+);
+
+/// All kinds of lobes.
+pub(super) const LOBES: [Row; 4] = [
+    (
+        ["tracers: Fresnel factors", "theory: Fresnel factors"],
+        FRESNEL,
+        (1e-11, "rounding, more where all is nearly reflected"),
+        |_| Lobe::Lambertian,
+    ),
+    (
+        ["tracers: Phong", "theory: Phong"],
+        PHONG,
+        (1e-11, "rounding of cos α, n = 10⁴ times"),
+        |dice| Lobe::Phong {
+            exponent: scale(dice, 0.1, 1e4),
+        },
+    ),
+    (
+        ["tracers: Beckmann", "theory: Beckmann"],
+        BECKMANN,
+        (3e-9, "1 − cos² of a facet loses 10⁻¹⁵ of α² = 10⁻⁶"),
+        |dice| Lobe::Beckmann {
+            roughness: scale(dice, 1e-3, 1.0),
+        },
+    ),
+    (
+        ["tracers: GGX", "theory: GGX"],
+        GGX,
+        (3e-9, "1 − cos² of a facet loses 10⁻¹⁵ of α² = 10⁻⁶"),
+        |dice| Lobe::Ggx {
+            roughness: scale(dice, 1e-3, 1.0),
+        },
+    ),
+];
+
 pub(super) fn checks() -> Vec<SecondCheck> {
-    let of = |fast: Fast, names: [&'static str; 4]| {
-        let check = |name, faults, tolerance, lobe: fn(&mut Dice) -> Lobe| SecondCheck {
-            name,
+    let of = |i: usize, fast: Fast| {
+        LOBES.map(|(names, faults, tolerance, lobe)| SecondCheck {
+            name: names[i],
             rounds: [4000, 1],
             tolerance,
             faults,
             difference: Box::new(move |dice, fault| difference(fast, lobe, dice, fault)),
-        };
-        let angles = (1e-11, "rounding of cos α, n = 10⁴ times");
-        let facets = (3e-9, "1 − cos² of a facet loses 10⁻¹⁵ of α² = 10⁻⁶");
-        let plain = (1e-11, "rounding, more where all is nearly reflected");
-        [
-            check(names[0], FRESNEL, plain, |_| Lobe::Lambertian),
-            check(names[1], PHONG, angles, |dice| Lobe::Phong {
-                exponent: scale(dice, 0.1, 1e4),
-            }),
-            check(names[2], BECKMANN, facets, |dice| Lobe::Beckmann {
-                roughness: scale(dice, 1e-3, 1.0),
-            }),
-            check(names[3], GGX, facets, |dice| Lobe::Ggx {
-                roughness: scale(dice, 1e-3, 1.0),
-            }),
-        ]
+        })
     };
-    let tracers = [
-        "tracers: Fresnel factors",
-        "tracers: Phong",
-        "tracers: Beckmann",
-        "tracers: GGX",
-    ];
-    let theory = [
-        "theory: Fresnel factors",
-        "theory: Phong",
-        "theory: Beckmann",
-        "theory: GGX",
-    ];
-    let both = [of(traced, tracers), of(predicted, theory)];
     let more = [
         between_lists("tracers: separable", traced),
         between_lists("theory: separable", predicted),
         of_sum("tracers: sum of BRDFs", traced_sum),
         of_sum("theory: sum of BRDFs", predicted_sum),
     ];
-    both.into_iter().flatten().chain(more).collect()
+    [of(0, traced), of(1, predicted)]
+        .into_iter()
+        .flatten()
+        .chain(more)
+        .collect()
 }
 
 fn between_lists(name: &'static str, fast: Fast) -> SecondCheck {

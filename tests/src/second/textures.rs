@@ -5,7 +5,7 @@ use super::lobes;
 use super::pattern::{Levels, Pattern, Varied};
 use super::vector::scale;
 use crate::hostile::dice::Dice;
-use etendue_field::{self as field, Brdf, Grating, Lobe, Mixture, Raster, Reflectance};
+use etendue_field::{self as field, Brdf, Grating, Mixture, Raster, Reflectance};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -130,18 +130,8 @@ fn pattern(dice: &mut Dice) -> Pattern {
 }
 
 fn brdf(dice: &mut Dice) -> Brdf {
-    let lobe = match dice.below(4) {
-        0 => Lobe::Lambertian,
-        1 => Lobe::Phong {
-            exponent: scale(dice, 1.0, 1e4),
-        },
-        2 => Lobe::Beckmann {
-            roughness: scale(dice, 1e-3, 1.0),
-        },
-        _ => Lobe::Ggx {
-            roughness: scale(dice, 1e-3, 1.0),
-        },
-    };
+    let (.., lobe) = lobes::LOBES[dice.below(lobes::LOBES.len())];
+    let lobe = lobe(dice);
     Brdf::new(lobe, dice.unit(), lobes::fresnel(dice))
 }
 

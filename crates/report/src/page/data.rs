@@ -133,22 +133,31 @@ pub fn data(
     let each = each.map(|((plane, found), prediction)| {
         PlaneData::new(plane, found, prediction, slices <= MOST_SLICES)
     });
+    let file = format!("{}.json", summary.scene);
     let method = match summary.method {
         Method::Photons => "",
         _ => " --method backward",
     };
-    let file = format!("{}.json", summary.scene);
+    let repeat = format!(
+        "\nto repeat: save the scene below as {file}, and run etendue run {} --photons {} --seed {}{method}",
+        shell_word(&file),
+        summary.photons,
+        summary.seed,
+    );
     let provenance = format!(
-        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nto repeat: save the scene below as {file}, and run etendue run {word} --photons {} --seed {}{method}",
+        "etendue {}, {} {} in {} batches, seed {}, α = {}\nscene hash {}{}",
         summary.version,
         grouped(summary.photons),
+        summary.method.words(),
         summary.batches,
         summary.seed,
         summary.alpha,
         summary.scene_hash,
-        summary.photons,
-        summary.seed,
-        word = shell_word(&file),
+        if summary.method == Method::Given {
+            ""
+        } else {
+            &repeat
+        },
     );
     let run = RunData {
         scene: &summary.scene,

@@ -2,11 +2,9 @@
 
 use super::Resolver;
 use etendue_field::{
-    AngleTable, Brdf, Fresnel, Grating, Lobe, MOST_TERMS, Pattern, Reflectance, Term, Weight,
+    AngleTable, Brdf, Fresnel, Grating, MOST_TERMS, Pattern, Reflectance, Term, Weight,
 };
-use etendue_scenefile::{
-    BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
-};
+use etendue_scenefile::{BrdfFile, EventFile, FresnelFile, GratingFile, PatternFile, TermFile};
 
 /// The maximum number of values of a factor that depends on an angle: one value for each tenth of
 /// a degree.
@@ -84,12 +82,6 @@ impl Resolver<'_> {
     }
 
     fn brdf(&mut self, of: &str, file: &BrdfFile) -> Brdf {
-        let lobe = match file.lobe {
-            LobeFile::Lambertian => Lobe::Lambertian,
-            LobeFile::Phong(exponent) => Lobe::Phong { exponent },
-            LobeFile::Beckmann(roughness) => Lobe::Beckmann { roughness },
-            LobeFile::Ggx(roughness) => Lobe::Ggx { roughness },
-        };
         let fresnel = match file.fresnel {
             FresnelFile::White => Fresnel::White,
             FresnelFile::Dielectric(index) => Fresnel::Dielectric { index },
@@ -103,7 +95,7 @@ impl Resolver<'_> {
         let incoming = table("incoming", &file.incoming);
         let outgoing = table("outgoing", &file.outgoing);
         Brdf {
-            lobe,
+            lobe: file.lobe.into(),
             albedo: file.albedo.number(self.color),
             fresnel,
             incoming,

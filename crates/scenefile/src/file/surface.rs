@@ -6,6 +6,7 @@ use super::allowed::{
 };
 use super::{AxisName, ColorFile, count, grey, one, white};
 use crate::limits::CELLS;
+use etendue_field::Lobe;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -253,6 +254,17 @@ pub enum LobeFile {
     Beckmann(#[schemars(transform = within(1e-3, 1.0))] f64),
     /// Microfacets with the GGX distribution, with this roughness α.
     Ggx(#[schemars(transform = within(1e-3, 1.0))] f64),
+}
+
+impl From<LobeFile> for Lobe {
+    fn from(file: LobeFile) -> Self {
+        match file {
+            LobeFile::Lambertian => Self::Lambertian,
+            LobeFile::Phong(exponent) => Self::Phong { exponent },
+            LobeFile::Beckmann(roughness) => Self::Beckmann { roughness },
+            LobeFile::Ggx(roughness) => Self::Ggx { roughness },
+        }
+    }
 }
 
 /// The share of light that is reflected, as a function of the angle of incidence.

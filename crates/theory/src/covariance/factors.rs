@@ -6,6 +6,7 @@
 //! Gaussian with the variance of the factor replaces the factor.
 
 use crate::geometry::{Matrix, diagonal};
+use crate::shading::PlanarLobe;
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
 use std::f64::consts::PI;
 
@@ -121,22 +122,15 @@ pub fn slope_cosine() -> Matrix<4> {
 /// angle θ₀ to the normal. Returns `None` for Lambert's lobe, which is uniform over all
 /// directions.
 ///
-/// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. A microfacet that is tilted
-/// by τ turns light by 2τ in the plane of incidence, and by 2τ cos θ₀ perpendicular to this plane.
-/// The variances of a Beckmann lobe are therefore 2α² and 2α² cos² θ₀. A GGX lobe has no variance,
-/// so 5α²/3 is used, which corresponds to the variance of its power spectrum. Shadowing, the
-/// Fresnel factor and the factor 1/(4 cos θi cos θo) are omitted.
+/// A microfacet that is tilted by τ turns light by 2τ in the plane of incidence, and by 2τ cos θ₀
+/// perpendicular to this plane. Shadowing, the Fresnel factor and the factor 1/(4 cos θi cos θo)
+/// are omitted.
 #[must_use]
 pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
-    let microfacets = |variance: f64| {
-        let cosine = libm::cos(theta0);
-        [variance, variance * cosine * cosine]
-    };
-    let [along, across] = match *lobe {
-        Lobe::Lambertian => return None,
-        Lobe::Phong { exponent } => [1.0 / exponent; 2],
-        Lobe::Beckmann { roughness } => microfacets(2.0 * roughness * roughness),
-        Lobe::Ggx { roughness } => microfacets(5.0 / 3.0 * roughness * roughness),
+    let along = PlanarLobe::of(*lobe)?.variance();
+    let across = match lobe {
+        Lobe::Phong { .. } => along,
+        _ => along * libm::cos(theta0).powi(2),
     };
     Some(diagonal([0.0, 0.0, along, across]))
 }

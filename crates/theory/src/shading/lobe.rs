@@ -3,6 +3,7 @@
 use super::cosine::cosine_power_hat;
 use super::panels::{doubling, even_transform};
 use crate::quadrature::integrate;
+use etendue_field::Lobe;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D,
@@ -38,6 +39,31 @@ pub enum PlanarLobe {
 }
 
 impl PlanarLobe {
+    /// The model in 2D of a lobe about the mirror direction; `None` for a lobe about the normal.
+    #[must_use]
+    pub fn of(lobe: Lobe) -> Option<Self> {
+        match lobe {
+            Lobe::Lambertian => None,
+            Lobe::Phong { exponent } => Some(Self::Phong { exponent }),
+            Lobe::Beckmann { roughness } => Some(Self::Beckmann { roughness }),
+            Lobe::Ggx { roughness } => Some(Self::Ggx { roughness }),
+        }
+    }
+
+    /// The variance of the angle from the mirror direction, in radians squared.
+    ///
+    /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. A microfacet that is
+    /// tilted by τ turns light by 2τ, so the variance of a Beckmann lobe is 2α². A GGX lobe has no
+    /// variance; 5α²/3 corresponds to the variance of its power spectrum.
+    pub(crate) fn variance(&self) -> f64 {
+        match *self {
+            Self::Phong { exponent } => 1.0 / exponent,
+            Self::Gaussian { deviation } => deviation * deviation,
+            Self::Beckmann { roughness } => 2.0 * roughness * roughness,
+            Self::Ggx { roughness } => 5.0 / 3.0 * roughness * roughness,
+        }
+    }
+
     /// Returns ρ'(δ), per radian.
     #[must_use]
     pub fn value(&self, angle: f64) -> f64 {

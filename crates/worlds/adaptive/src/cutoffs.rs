@@ -13,7 +13,8 @@ const MIRROR: f64 = 1e4;
 /// A cache of the cutoffs of lobes.
 #[derive(Debug, Default)]
 pub(crate) struct Cutoffs {
-    known: Mutex<BTreeMap<[u64; 2], f64>>,
+    /// The cutoff of each kind of lobe at each rounded width.
+    known: Mutex<BTreeMap<(&'static str, u64), f64>>,
 }
 
 impl Cutoffs {
@@ -28,28 +29,22 @@ impl Cutoffs {
     }
 
     fn of_lobe(&self, lobe: Lobe) -> f64 {
-        // Widths are rounded to a few per cent, so that a textured roughness requires few cutoffs.
-        let step = |width: f64| (STEPS * libm::log2(width.max(1e-4))).round();
-        let (kind, step) = match lobe {
-            Lobe::Lambertian => return COSINE_CUTOFF,
-            Lobe::Phong { exponent } => (0, step(exponent)),
-            Lobe::Beckmann { roughness } => (1, step(roughness)),
-            Lobe::Ggx { roughness } => (2, step(roughness)),
+        let mut rounded = lobe;
+        let kind = lobe.name();
+        let Some((_, width)) = rounded.number_mut() else {
+            return COSINE_CUTOFF;
         };
+        // Widths are rounded to a few per cent, so that a textured roughness requires few cutoffs.
+        let step = (STEPS * libm::log2(width.max(1e-4))).round();
+        *width = libm::exp2(step / STEPS);
         let find = || {
-            let width = libm::exp2(step / STEPS);
-            let rounded = match lobe {
-                Lobe::Phong { .. } => Lobe::Phong { exponent: width },
-                Lobe::Beckmann { .. } => Lobe::Beckmann { roughness: width },
-                Lobe::Lambertian | Lobe::Ggx { .. } => Lobe::Ggx { roughness: width },
-            };
             let found = lobe_cutoff(rounded).filter(|cutoff| cutoff.is_finite());
             found.unwrap_or(COSINE_CUTOFF).min(MIRROR)
         };
         let Ok(mut known) = self.known.lock() else {
             return find();
         };
-        *known.entry([kind, step.to_bits()]).or_insert_with(find)
+        *known.entry((kind, step.to_bits())).or_insert_with(find)
     }
 }
 

@@ -10,8 +10,8 @@ use crate::second::surfaces::{focused, refracted};
 use crate::second::vector::{Axes, Vector, distance, dot, length, plus, times, turned, unit};
 use etendue_field::{AngleTable, Brdf, Fresnel, Grating, Lobe, Orientation, Profile, Quantity};
 use etendue_scene::{
-    AxisName, BrdfFile, ColorFile, EventFile, FormFile, FresnelFile, LobeFile, PatternFile, Place,
-    SceneFile, SurfaceFile,
+    AxisName, BrdfFile, ColorFile, EventFile, FormFile, FresnelFile, PatternFile, Place, SceneFile,
+    SurfaceFile,
 };
 use std::f64::consts::PI;
 
@@ -434,12 +434,6 @@ pub(super) fn number(axis: AxisName) -> usize {
 }
 
 fn brdf(file: &BrdfFile) -> Brdf {
-    let lobe = match file.lobe {
-        LobeFile::Lambertian => Lobe::Lambertian,
-        LobeFile::Phong(exponent) => Lobe::Phong { exponent },
-        LobeFile::Beckmann(roughness) => Lobe::Beckmann { roughness },
-        LobeFile::Ggx(roughness) => Lobe::Ggx { roughness },
-    };
     let fresnel = match &file.fresnel {
         FresnelFile::White => Fresnel::White,
         FresnelFile::Dielectric(index) => Fresnel::Dielectric { index: *index },
@@ -455,6 +449,6 @@ fn brdf(file: &BrdfFile) -> Brdf {
     Brdf {
         incoming: table(&file.incoming),
         outgoing: table(&file.outgoing),
-        ..Brdf::new(lobe, grey(&file.albedo), fresnel)
+        ..Brdf::new(file.lobe.into(), grey(&file.albedo), fresnel)
     }
 }

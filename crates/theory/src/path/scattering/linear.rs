@@ -7,7 +7,7 @@ use crate::obstacle::LegRay;
 use crate::path::{PathChain, PathSystem, PreparedPath, ScatteringSurface};
 use etendue_field::{Brdf, Frame, Lobe, Reflectance};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// The first-order chain, prepared for the evaluation of radiance.
 #[derive(Clone, Debug)]
@@ -112,17 +112,21 @@ pub(crate) fn kernel(
     let cos_from = away(from_theta, from_phi).z;
     let factors = brdf::factors(brdf, cos_from, away(to_theta, to_phi).z);
     let [theta, phi] = [to_theta + from_theta, to_phi + from_phi];
-    let reflected = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from_theta));
     let lobe = match brdf.lobe {
-        Lobe::Lambertian => reflected() / PI,
-        // A Phong lobe depends only on the cosine of the angle from the mirror direction.
+        // A Phong lobe depends only on the cosine of the angle from the mirror direction, and its
+        // Fresnel factor on the actual angle of incidence.
         Lobe::Phong { exponent } => {
             let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
-            reflected() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
+            let reflected = brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from_theta));
+            reflected * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
         }
-        Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
+        lobe if lobe.is_about_mirror() => {
             let to = away(theta - incidence, phi);
             brdf::lobe(brdf, DVec3::Z, away(incidence, 0.0), to)
+        }
+        _ => {
+            let from = away(from_theta, from_phi);
+            brdf::lobe(brdf, DVec3::Z, from, away(to_theta, to_phi))
         }
     };
     factors * lobe

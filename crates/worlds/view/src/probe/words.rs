@@ -86,13 +86,11 @@ pub(super) fn of_plane(request: &ProbeRequest, found: &Found, plane: &VirtualPla
 fn word(reflects: Reflects) -> String {
     match reflects {
         Reflects::Nothing => "nothing: it is black from this side".to_owned(),
-        Reflects::Diffuse => "diffuse".to_owned(),
+        Reflects::Diffuse | Reflects::Lobe(Lobe::Lambertian) => "diffuse".to_owned(),
         Reflects::Mirror => "mirror or smooth interface".to_owned(),
-        Reflects::Lobe(lobe) => match lobe {
-            Lobe::Lambertian => "diffuse".to_owned(),
-            Lobe::Phong { exponent } => format!("Phong, exponent {exponent}"),
-            Lobe::Beckmann { roughness } => format!("Beckmann, roughness {roughness}"),
-            Lobe::Ggx { roughness } => format!("GGX, roughness {roughness}"),
+        Reflects::Lobe(mut lobe) => match (lobe.name(), lobe.number_mut()) {
+            (name, Some((of, value))) => format!("{name}, {of} {value}"),
+            (name, None) => name.to_owned(),
         },
     }
 }
