@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from etendue.plot import curves
 from etendue.rays import Spectrum, columns, groups
 from etendue.result import Plane
 
@@ -19,6 +20,8 @@ Uncertain = tuple[float, float]
 PAIRS = 40_000
 """Wanted number of pairs of rays in one cell, from which the étendue is estimated."""
 BINS = 64
+SHIFTS = 4
+"""Random positions of the grid of cells, over which estimates are averaged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,64 +83,100 @@ def phase_space(
     """
     if not (np.isreal(index) and 0 < index < math.inf):
         raise ValueError(f"index is {index}; allowed: a positive number")
-    position = columns(x, y, u, v, weight)
-    flux = position.pop()
+    *position, flux = columns(x, y, u, v, weight)
     if not np.isfinite([*position, flux]).all() or (flux < 0).any() or not flux.any():
         raise ValueError("a ray has a coordinate that is not finite, or a weight that is negative, or all weights are 0; allowed: flux")
     group, count = groups(flux.size, batch, batches)
     if count < 4:
         raise ValueError(f"there are {count} groups of rays; allowed: 4 or more")
-    power, flux = float(flux.sum()), flux / flux.max()
     cosine = index / np.sqrt(1 + position[2] ** 2 + position[3] ** 2)
     z = np.stack([position[0], position[1], position[2] * cosine, position[3] * cosine], 1)
-
-    def sums(values: NDArray[Any]) -> Floats:
-        return np.bincount(group, flux * values, minlength=count).astype(np.float64)
-
-    powers = sums(np.ones_like(flux))
-    kept = _without(powers)
-    middle = flux @ z / flux.sum()
-    z0 = z - middle
-    mean = np.stack([_without(sums(z0[:, i])) / kept for i in range(4)], -1)
-    products = np.stack([np.stack([_without(sums(z0[:, i] * z0[:, j])) / kept for j in range(4)], -1) for i in range(4)], -2)
-    covariance = products - mean[:, :, None] * mean[:, None, :]
-
-    def emittance(axes: tuple[int, ...]) -> Uncertain:
-        return _jackknife(np.sqrt(np.maximum(0.0, np.linalg.det(covariance[:, axes][:, :, axes]))))
-
-    def volume(axes: tuple[int, ...], of: Any = _volume, share: float = 0.75) -> Uncertain:
-        part = covariance[0][np.ix_(axes, axes)]
-        widths = np.sqrt(np.diag(part))
-        if not widths.all() or np.linalg.det(part / np.outer(widths, widths)) < 1e-12:
-            raise ValueError("the rays fill no volume of phase space; allowed: independent positions and directions")
-        # Coordinates of variance 1 without correlation: cells follow the shear of travel.
-        root = np.asarray(np.linalg.cholesky(part), np.float64)
-        white: Floats = z0[:, axes] @ np.linalg.inv(root).T
-        fine, coarse = (of(white, flux, group, count, scale) * np.diag(root).prod() for scale in (1.0, 2.0))
-        # Extrapolated to no size, half the cells change the volume by all of the step (hard edges) to a third of it (smooth light).
-        value, error = _jackknife(fine * (fine / coarse) ** share)
-        return value, math.hypot(error, 0.5 * abs(float(coarse[0] - fine[0])))
-
+    rays = _Rays(z, flux / flux.max(), group, count)
     skewness = z[:, 0] * z[:, 3] - z[:, 1] * z[:, 2]
-    least = float(skewness.min())
-    edges = np.linspace(least, max(float(skewness.max()), math.nextafter(least, math.inf)), BINS + 1)
-    bins = np.clip(np.searchsorted(edges, skewness, side="right") - 1, 0, BINS - 1)
-    shares = np.stack([_without(sums(bins == i)) / kept for i in range(BINS)], -1)
+    edges = np.histogram_bin_edges(skewness, BINS)
+    bins = np.searchsorted(edges[1:-1], skewness, side="right")
+    shares = np.stack([rays.means((bins == i).astype(np.float64)) for i in range(BINS)], -1)
+    every, section_x, section_y = (0, 1, 2, 3), (0, 2), (1, 3)
     return PhaseSpace(
-        power,
-        volume((0, 1, 2, 3)),
-        volume((0, 2)),
-        volume((1, 3)),
-        volume((0, 2), _area95, 0.5),
-        volume((1, 3), _area95, 0.5),
-        emittance((0, 2)),
-        emittance((1, 3)),
-        emittance((0, 1, 2, 3)),
-        _jackknife(_without(sums(skewness)) / kept),
+        float(flux.sum()),
+        rays.extrapolated(rays.volumes, every),
+        rays.extrapolated(rays.volumes, section_x),
+        rays.extrapolated(rays.volumes, section_y),
+        rays.extrapolated(rays.areas95, section_x),
+        rays.extrapolated(rays.areas95, section_y),
+        rays.emittance(section_x),
+        rays.emittance(section_y),
+        rays.emittance(every),
+        _jackknife(rays.means(skewness)),
         edges,
         shares[0],
         _errors(shares),
     )
+
+
+class _Rays:
+    """Rays in phase space, z = [ray, (x, y, p, q)], in independent groups. Arrays of results are of all groups, then of all but each."""
+
+    def __init__(self, z: Floats, flux: Floats, group: NDArray[Any], count: int) -> None:
+        self.flux, self.group, self.count = flux, group, count
+        self.effective = float(flux.sum() ** 2 / (flux**2).sum())
+        """Number of rays of equal flux with the same noise."""
+        self.z = z - flux @ z / flux.sum()
+        mean = np.stack([self.means(one) for one in self.z.T], -1)
+        products = np.stack([self.means(one * other) for one in self.z.T for other in self.z.T], -1).reshape(-1, 4, 4)
+        self.covariance: Floats = products - mean[:, :, None] * mean[:, None, :]
+
+    def sums(self, values: Floats) -> Floats:
+        """Sums of flux times values [ray] over each group."""
+        return np.bincount(self.group, self.flux * values, self.count).astype(np.float64)
+
+    def means(self, values: Floats) -> Floats:
+        return _without(self.sums(values)) / _without(self.sums(np.ones_like(values)))
+
+    def emittance(self, axes: tuple[int, ...]) -> Uncertain:
+        return _jackknife(np.sqrt(np.maximum(0.0, np.linalg.det(self.covariance[:, axes][:, :, axes]))))
+
+    def extrapolated(self, of: Callable[[Floats, float], Floats], axes: tuple[int, ...]) -> Uncertain:
+        """A volume from cells of two sizes, extrapolated towards cells of no size."""
+        part = self.covariance[0][np.ix_(axes, axes)]
+        widths = np.asarray(np.sqrt(np.diag(part)), np.float64)
+        if not widths.all() or np.linalg.det(part / np.outer(widths, widths)) < 1e-12:
+            raise ValueError("the rays fill no volume of phase space; allowed: independent positions and directions")
+        # Coordinates of variance 1 without correlation: cells follow the shear of travel.
+        root = np.asarray(np.linalg.cholesky(part), np.float64)
+        white: Floats = self.z[:, axes] @ np.linalg.inv(root).T
+        fine, coarse = (of(white, scale) * np.diag(root).prod() for scale in (1.0, 2.0))
+        # Half the cells change a volume by all of the step (hard edges) to a third of it (smooth light), and its densest part by half.
+        value, error = _jackknife(fine * np.divide(fine, coarse) ** (0.75 if of == self.volumes else 0.5))
+        return value, math.hypot(error, 0.5 * abs(float(coarse[0] - fine[0])))
+
+    def volumes(self, z: Floats, scale: float) -> Floats:
+        """(∫ f)² / ∫ f² from pairs of rays."""
+        side = scale * float(np.clip((2 * PAIRS / self.effective**2) ** (1 / z.shape[1]) * math.sqrt(12), 0.02, 1.0))
+        pairs = np.zeros(self.count + 1)
+        for cell in _cells(z, side):
+            held = np.bincount(cell, self.flux)
+            both, place = np.unique(cell * self.count + self.group, return_inverse=True)
+            flux, group = np.bincount(place, self.flux), both % self.count
+            at = np.bincount(group, flux * held[both // self.count], self.count)
+            squares = np.bincount(group, flux**2, self.count)
+            # Pairs of different groups only: rays of one group may depend on each other.
+            pairs += np.append(held @ held, held @ held - 2 * at + squares) - _without(squares)
+        if not (pairs > 0).all():
+            raise ValueError(f"{self.flux.size} rays are too few for the étendue; allowed: about 1,000 rays of similar weight")
+        powers = self.sums(np.ones_like(self.flux))
+        return SHIFTS * (_without(powers) ** 2 - _without(powers**2)) * side ** z.shape[1] / pairs
+
+    def areas95(self, z: Floats, scale: float) -> Floats:
+        """Area of the densest cells with 95 % of the power, in two dimensions."""
+        side = scale * float(np.clip(math.sqrt(12) * 3 / self.effective ** (1 / 3), 0.02, 0.5))
+        cells = np.zeros(self.count + 1)
+        for cell in _cells(z, side):
+            most = int(cell.max()) + 1
+            held = np.bincount(self.group * most + cell, self.flux, self.count * most).reshape(-1, most)
+            shares = np.sort(_without(held), axis=1)[:, ::-1].cumsum(1)
+            cells += [np.interp(0.95 * share[-1], share, np.arange(1, most + 1)) for share in shares]
+        return cells * side**2 / SHIFTS
 
 
 def _without(groups: NDArray[Any]) -> NDArray[Any]:
@@ -156,52 +195,18 @@ def _jackknife(values: Floats) -> Uncertain:
     return float(values[0]), float(_errors(values))
 
 
-def _cells(z: Floats) -> NDArray[np.int64]:
-    """The rank of the unit cell of each point among the cells with points."""
-    whole = np.floor(z).astype(np.int64)
-    whole -= whole.min(0)
-    # A far outlier would need more cells than there are numbers.
-    shape = [int(most) for most in whole.max(0) + 1]
-    if math.prod(shape) >= 2**62:
-        raise ValueError("a ray is too far from the others; allowed: positions and directions of comparable spread")
-    return np.unique(np.ravel_multi_index(tuple(whole.T), shape), return_inverse=True)[1]
-
-
-def _volume(z: Floats, flux: Floats, group: NDArray[Any], count: int, scale: float) -> Floats:
-    """(∫ f)² / ∫ f² of all groups, and of all but each."""
-    dimensions = z.shape[1]
-    rays = flux.sum() ** 2 / (flux**2).sum()
-    side = scale * float(np.clip((2 * PAIRS / rays**2) ** (1 / dimensions) * math.sqrt(12), 0.02, 1.0))
+def _cells(z: Floats, side: float) -> Iterator[NDArray[np.int64]]:
+    """The rank of the cell of each point among the cells with points, for some random positions of the grid of cells."""
     random = np.random.default_rng(1)
-    powers = np.bincount(group, flux, minlength=count)
-    pairs = np.zeros(count + 1)
-    for _ in range(4):
-        cell = _cells(z / side + random.random((1, dimensions)))
-        held = np.bincount(cell, flux)
-        own, place = np.unique(cell * count + group, return_inverse=True)
-        part = np.bincount(place, flux)
-        at = np.bincount(own % count, part * held[own // count], minlength=count)
-        squares = np.bincount(own % count, part**2, minlength=count)
-        # Pairs of different groups only: rays of one group may depend on each other.
-        pairs += np.append(held @ held, held @ held - 2 * at + squares) - _without(squares)
-    if not (pairs > 0).all():
-        raise ValueError(f"{flux.size} rays are too few for the étendue; allowed: about 1,000 rays of similar weight")
-    return 4 * (_without(powers) ** 2 - _without(powers**2)) * side**dimensions / pairs
-
-
-def _area95(z: Floats, flux: Floats, group: NDArray[Any], count: int, scale: float) -> Floats:
-    """Area with 95 % of the power of all groups, and of all but each, in two dimensions."""
-    rays = flux.sum() ** 2 / (flux**2).sum()
-    side = scale * float(np.clip(math.sqrt(12) * 3 / rays ** (1 / 3), 0.02, 0.5))
-    random = np.random.default_rng(1)
-    cells = np.zeros(count + 1)
-    for _ in range(4):
-        cell = _cells(z / side + random.random(2))
-        most = int(cell.max()) + 1
-        held = np.bincount(group * most + cell, flux, minlength=count * most).reshape(count, most)
-        shares = np.sort(_without(held), axis=1)[:, ::-1].cumsum(1)
-        cells += [np.interp(0.95 * share[-1], share, np.arange(1, most + 1)) for share in shares]
-    return 0.25 * cells * side**2
+    for _ in range(SHIFTS):
+        shift = np.asarray(random.random((1, z.shape[1])), np.float64)
+        whole = np.floor(z / side + shift).astype(np.int64)
+        whole -= whole.min(0)
+        # A far outlier would need more cells than there are numbers.
+        shape = [int(most) + 1 for most in whole.max(0)]
+        if math.prod(shape) >= 2**62:
+            raise ValueError("a ray is too far from the others; allowed: positions and directions of comparable spread")
+        yield np.unique(np.ravel_multi_index(tuple(whole.T), shape), return_inverse=True)[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,14 +226,9 @@ class MTF:
 
     def plot(self, ax: Any = None) -> Any:
         """Draws a curve with errors for each azimuth, on axes of matplotlib; returns the axes."""
-        if ax is None:
-            import matplotlib.pyplot as plt
-
-            ax = plt.gca()
-        for number, (azimuth, value, sigma) in enumerate(zip(self.azimuth, self.value, self.sigma)):
-            ax.errorbar(self.frequency, value, sigma, color=f"C{number % 10}", label=f"{math.degrees(azimuth):.0f}°")
+        labels = [f"{math.degrees(azimuth):.0f}°" for azimuth in self.azimuth]
+        ax = curves(ax, self.frequency, self.value, self.sigma, labels, "azimuth")
         ax.set(xlabel="ρ [cycles/m]" if self.along == "rho" else "ν [cycles/slope]", ylabel="MTF", ylim=(0, None))
-        ax.legend(title="azimuth")
         return ax
 
 
@@ -246,27 +246,20 @@ def mtf(spectra: Spectrum | Plane | Sequence[Spectrum | Plane], *, along: Litera
         raise ValueError(f"along is {along!r} for {len(every)} spectra; allowed: 'rho' or 'nu', and 1 spectrum or at least 4")
     axes = [one.slices if isinstance(one, Plane) else one for one in every]
     first = axes[0]
-    names = ("azimuth", "rho", "nu")
-    if not all(np.array_equal(getattr(one, name), getattr(first, name)) for one in axes for name in names):
+    if not all(np.array_equal(getattr(one, name), getattr(first, name)) for one in axes for name in ("azimuth", "rho", "nu")):
         raise ValueError("the spectra have different frequencies; allowed: the same azimuth, rho and nu")
-
-    def cut(values: NDArray[Any]) -> NDArray[Any]:
-        rho, nu = (axis.size // 2 for axis in (first.rho, first.nu))
-        return values[:, rho:, nu] if along == "rho" else values[:, rho, nu:]
-
-    def ratio(slices: NDArray[Any]) -> Floats:
-        if not np.abs(slices[..., :1]).all():
-            raise ValueError("the spectrum is zero at frequency 0; allowed: light in the window")
-        return np.abs(slices) / np.abs(slices[..., :1])
-
-    parts = np.stack([cut(one.sample.slices) for one in every])
-    frequency = getattr(first, along)
-    frequency = frequency[frequency.size // 2 :]
+    rho, nu = first.rho.size // 2, first.nu.size // 2
+    frequency, cut = (first.rho[rho:], np.s_[..., rho:, nu]) if along == "rho" else (first.nu[nu:], np.s_[..., rho, nu:])
+    # With several spectra: all of them, and all but each.
+    parts = np.stack([one.sample.slices[cut] for one in every])
+    parts = _without(parts) if len(every) > 1 else parts
+    middle = np.abs(parts[..., :1])
+    if not middle.all():
+        raise ValueError("the spectrum is zero at frequency 0; allowed: light in the window")
+    values = np.abs(parts) / middle
     if len(every) > 1:
-        values = ratio(_without(parts))
         return MTF(along, first.azimuth, frequency, values[0], _errors(values))
-    value = ratio(parts[0])
-    noise = cut(every[0].sample.slices_sigma)
-    sigma = np.hypot(noise, value * noise[:, :1]) / np.abs(parts[0][:, :1])
+    noise = every[0].sample.slices_sigma[cut]
+    sigma = np.hypot(noise, values[0] * noise[:, :1]) / middle[0]
     sigma[:, 0] = 0.0
-    return MTF(along, first.azimuth, frequency, value, sigma)
+    return MTF(along, first.azimuth, frequency, values[0], sigma)

@@ -13,7 +13,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize(("page", "least"), [("package", 9), ("operators-in-python", 6), ("grids", 6), ("renderer-tests", 6), ("etendue-and-mtf", 4)])
+@pytest.mark.parametrize(
+    ("page", "least"), [("package", 9), ("operators-in-python", 6), ("grids", 6), ("renderer-tests", 6), ("etendue-and-mtf", 4)]
+)
 def test_the_pages_of_the_book(page, least, monkeypatch):
     monkeypatch.chdir(ROOT)
     blocks = re.findall(r"```(python|text)\n(.*?)```", (ROOT / f"docs/{page}.md").read_text(), re.DOTALL)
