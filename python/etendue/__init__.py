@@ -20,8 +20,11 @@ from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
 from etendue.grids import GridSpectrum, grid_spectrum
+from etendue.images import TwoSample, two_sample
+from etendue.phase_space import MTF, PhaseSpace, mtf, phase_space
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
+from etendue.sampling import ChiSquare, Furnace, chi_square, furnace
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
 from etendue.theories import compare, theory
@@ -31,11 +34,15 @@ from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_sc
 
 __all__ = [
     "CannotRun",
+    "ChiSquare",
     "Difference",
+    "Furnace",
     "GridSpectrum",
     "ImportedScene",
     "LightField",
+    "MTF",
     "Measurement",
+    "PhaseSpace",
     "Photons",
     "Picture",
     "Plane",
@@ -50,19 +57,24 @@ __all__ = [
     "SceneError",
     "Slices",
     "Spectrum",
+    "TwoSample",
     "Variance",
     "VarianceCurve",
     "Wedge",
     "__version__",
     "check",
+    "chi_square",
     "compare",
     "difference",
     "figure",
+    "furnace",
     "grid_spectrum",
     "import_scene",
     "measure",
     "merge",
+    "mtf",
     "operators",
+    "phase_space",
     "photons",
     "predict",
     "probe",
@@ -71,6 +83,7 @@ __all__ = [
     "spectrum",
     "sweep",
     "theory",
+    "two_sample",
     "variance",
 ]
 

@@ -21,3 +21,15 @@ def plotted(ax: Any, rho: Floats, nu: Floats, power: Floats) -> Any:
     ax.set(xlabel="ρ [cycles/m]", ylabel="ν [cycles/slope]")
     ax.figure.colorbar(image, ax=ax, label="dB")
     return ax
+
+
+def curves(ax: Any, x: Floats, values: Floats, sigmas: Floats, labels: list[str], title: str) -> Any:
+    """Draws curves [curve, x] with their standard errors and a legend with a title, on axes of matplotlib; returns the axes."""
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        ax = plt.gca()
+    for value, sigma, label in zip(values, sigmas, labels):
+        ax.errorbar(x, value, sigma, capsize=2, label=label)
+    ax.legend(title=title)
+    return ax

@@ -114,17 +114,12 @@ def spectrum(
 
     Returns a `Spectrum`. Raises `ValueError` if arrays do not match, and `SceneError` if the window or the frequencies are invalid.
     """
-    columns = [_column(name, column) for name, column in (("x", x), ("y", y), ("u", u), ("v", v))]
-    rays = columns[0].size
-    columns.append(np.ones(rays) if weight is None else _column("weight", weight))
-    for name, column in zip(("y", "u", "v", "weight"), columns[1:]):
-        if column.size != rays:
-            raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one number per ray in each")
-    group, batches = _groups(rays, batch, batches)
+    rays = columns(x, y, u, v, weight)
+    group, batches = groups(rays[0].size, batch, batches)
     plane = Scene(_around(window, frequencies), method="given", name="rays")
     with told(progress) as tell:
         found: dict[str, Any] = plane._run.spectrum(  # pyright: ignore[reportPrivateUsage]
-            columns, group, batches, thread_count(threads), tell
+            rays, group, batches, thread_count(threads), tell
         )
     if not np.isfinite(found["power"]).all():
         raise ValueError("the power of these weights is beyond the largest number; allowed: weights below 1e100 or so")
@@ -134,6 +129,17 @@ def spectrum(
     return Spectrum(**found)
 
 
+def columns(x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike, weight: ArrayLike | None) -> list[Floats]:
+    """x, y, u, v and weight of rays, which is 1 by default, as arrays of one size."""
+    found = [_column(name, column) for name, column in (("x", x), ("y", y), ("u", u), ("v", v))]
+    rays = found[0].size
+    found.append(np.ones(rays) if weight is None else _column("weight", weight))
+    for name, column in zip(("y", "u", "v", "weight"), found[1:]):
+        if column.size != rays:
+            raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one number per ray in each")
+    return found
+
+
 def _column(name: str, numbers: ArrayLike) -> Floats:
     column = np.asarray(numbers)
     if column.ndim != 1 or column.dtype.kind not in "buif":
@@ -141,7 +147,7 @@ def _column(name: str, numbers: ArrayLike) -> Floats:
     return np.ascontiguousarray(column, dtype=np.float64)
 
 
-def _groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np.uint32], int]:
+def groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np.uint32], int]:
     """The group of each ray, and the number of groups."""
     if batch is None:
         if not 2 <= batches <= rays or batches != int(batches):

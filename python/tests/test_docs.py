@@ -13,7 +13,17 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize(("page", "least"), [("README", 2), ("docs/package", 9), ("docs/operators-in-python", 6), ("docs/grids", 6)])
+PAGES = [
+    ("README", 2),
+    ("docs/package", 9),
+    ("docs/operators-in-python", 6),
+    ("docs/grids", 6),
+    ("docs/renderer-tests", 4),
+    ("docs/etendue-and-mtf", 4),
+]
+
+
+@pytest.mark.parametrize(("page", "least"), PAGES)
 def test_what_pages_print(page, least, monkeypatch):
     monkeypatch.chdir(ROOT)
     blocks = re.findall(r"```(python|text)\n(.*?)```", (ROOT / f"{page}.md").read_text(), re.DOTALL)
