@@ -129,7 +129,8 @@ def lobe(exponent, axis=(0.6, 0.0, 0.8)):
 
 def chi_square():
     print("## `chi_square`\n\nSamplers of cosⁿ lobes with their densities, 4,000 samples, about 100 to 140 cells. "
-        "Rows have the same random numbers, so they deviate together: two are above the bound here, and 3,000 draws with other seeds give 0.013 (n = 1) and 0.015 (n = 10⁶), below their bound of 0.025.\n")
+        "Rows have the same random numbers, so they deviate together: two are above the bound here, and 3,000 draws with other seeds "
+        "give 0.013 (n = 1) and 0.015 (n = 10⁶), below their bound of 0.025.\n")
     keys = {"samples": 4000, "cells": 64}
     rows = []
     cases = [(str(exponent), lobe(exponent)) for exponent in (1, 30, 1_000_000)]
