@@ -1,6 +1,6 @@
 """Theories as a user writes them, in NumPy alone, against photons: are right ones accepted and wrong ones rejected?
 
-Prints results/own-theories.md. Run: python python/validation/theories.py [--seeds N] [--only NAME]
+Prints results/own-theories.md, in about ten minutes of one core (`--seeds` and `--only` shorten this). Run: python python/validation/theories.py [--seeds N] [--only NAME]
 """
 
 from __future__ import annotations
@@ -289,7 +289,7 @@ CASES = {
     "spot": Case("radiance", scene({"Spot": {"bulb": {"Square": 0.1}, "exponent": 20}}, at={"Distance": 0.5}, u=0.5), spot, {
         "n + 1 for n": ({"exponent": 21}, "exponent"), "2n for n": ({"exponent": 40}, "exponent")}, ("exponent", 20), 2**13, 2**18),
     "texture": Case("radiance", scene(square(0.4), smooth(PAINTED), {"Distance": 1.2}), texture, {
-        "axes swapped": ({"swapped": True}, "exchanged"), "X not reversed": ({"reverse": 1}, "reversed")}, None, 2**17, 2**14),
+        "axes swapped": ({"swapped": True}, "exchanged"), "X not reversed": ({"reverse": 1}, "reversed")}, None, 2**17, 2**16),
     "two occluders": Case("slices", scene(square(0.3), blockers=[hole(0.4, [0.1, 0.1], 0.02), CARD]), occluders, {
         "distances from the lamp": ({"distances": (0.4, 0.7)}, "distance"), "shadows added": ({"added": True}, "shadow"),
         "half window": ({"narrow": 0.5}, "window")}, photons=2**16),
@@ -473,12 +473,17 @@ Each theory is compared with the photons of {seeds} seeds.
 *D* is the largest distance of the distribution of p from the uniform one (Kolmogorov and Smirnov): for p of the slices, and for p of power.
 The 5 % bound of D is {bound:.3f}, so about one of the {count} numbers is expected above it.
 Of {seeds} verdicts, about {expected:.0f} are expected to fail, because α is 1 %.
-The theory's own error is the same for all seeds; *error* is its stated error, and *noise* contains it.
+The theory's own error is the same for all seeds, so it is kept far below the noise: with 2^12 points the slit's p of power has D = 0.109, and the same slit as an array has 0.063 with the same photons.
+*Error* is its stated error, and *noise* contains it.
 *Pull* is the measured parameter minus the true one in standard errors: the mean over the seeds with its error, and the standard deviation.
 
 | theory | stated as | photons | noise | error | D of slices | D of power | fail | undecided | pull of parameter | seconds a seed |
 |---|---|---|---|---|---|---|---|---|---|---|"""
 FAULTS = """
+The thin lens as a spectrum function has constant radiance, which is right to second order in slopes: its focal length is 0.3 % too small.
+The radiance function *thin lens, exact* has the factor by which flux is kept, (1 + u² + v²)² after the lens over that before it, and no such bias.
+GGX is undecided where noise is above 10 %, `run.resolution`.
+
 ## Wrong theories
 
 Each fault is planted into the theory.
@@ -489,6 +494,10 @@ Each fault is planted into the theory.
 | theory | fault | photons | hint | named | hint with 16 times as many photons | named |
 |---|---|---|---|---|---|---|"""
 QUADRATURE = """
+A factor and a reversed or exchanged axis are named, and so is a wrong parameter, if the theory has it as a parameter.
+A half window, a cosine or 1/r² that is left out, 2π in the exponent and slopes for angles are rejected but not named.
+With few photons a factor may agree although it is not the cause; with 16 times as many photons this happens less often.
+
 ## Stated errors of functions
 
 Fields are products of two boxes (*edges*) or two Gaussians (*smooth*) along random sheared coordinates, times a grating, in windows of random size.
