@@ -34,6 +34,8 @@ FIRST, LAST = 2**12, 2**20
 """The first and the largest number of points of a replicate."""
 SHARE = 0.3
 """The largest share of the noise that the error of a function's slices may have."""
+COARSE = 0.05
+"""The largest error of a function's slices, relative to the slices; above 0.09, replicates may be too uneven for a test."""
 STEP = 0.01
 """The step of the differences that give derivatives, as a share of a parameter."""
 BLOCK = 2**20
@@ -69,7 +71,7 @@ def compare(
 
     `prediction` is a prediction of Étendue, by default that of the scene, or a theory of the user: for each plane, what `theory` takes; or
     an NPZ file of arrays PLANE/ARRAY. A `Spectrum` of rays has one plane, "rays", and needs a theory of the user. The points of functions
-    are doubled until the error of their slices is at most 0.3 of the noise, or until there are 2²⁰.
+    are doubled until the error of their slices is at most 0.3 of the noise and 5 % of the slices, or until there are 2²⁰.
     """
     if isinstance(prediction, (str, os.PathLike)):
         with np.load(prediction) as file:
@@ -213,13 +215,13 @@ class _Sums:
 
     def is_coarse(self, report: Mapping[str, Any]) -> bool:
         error, noise = report["quadrature_error"], report["noise_limit"]
-        return error is not None and noise is not None and error > SHARE * noise
+        return error is not None and noise is not None and error > min(SHARE * noise, COARSE)
 
     def refine(self, report: Mapping[str, Any]) -> None:
         """Doubles the points until the error is as small as it should be beside the noise of the measurement alone."""
         noise = np.sqrt(max(report["noise_limit"] ** 2 - report["quadrature_error"] ** 2, 0))
         first = self.points
-        while self.points == first or (self.points < LAST and self.error() > SHARE * noise):
+        while self.points == first or (self.points < LAST and self.error() > min(SHARE * noise, COARSE)):
             self.grow(2 * self.points)
 
 

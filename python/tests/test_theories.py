@@ -118,6 +118,13 @@ def test_a_wrong_convention_is_named(behind_hole, wrong, hint):
     assert hint in said[0] if hint else not said
 
 
+def test_a_theory_far_below_the_noise_fails(measured):
+    # The lamp is 20 times too small. The noise is far above this light, so points are doubled because their replicates are uneven.
+    few = etendue.measure(measured.scene, photons=2**12)
+    plane = etendue.compare(few, {"receiver": lambda x, y, u, v: (abs(x - u) < 0.005) & (abs(y - v) < 0.005)})["receiver"]
+    assert plane.verdict == "fail" and plane.report["quadrature_error"] < 0.05 < 0.3 * plane.report["noise_limit"]
+
+
 def test_spectra_of_rays(behind_hole):
     random = np.random.default_rng(1)
     x, y, u, v = (half * random.uniform(-1, 1, 200_000) for half in (0.3, 0.3, 0.25, 0.25))
