@@ -109,6 +109,8 @@ class Lobe:
         cls, name: str, slopes: Callable[[Floats], Floats], shadow: Callable[[Floats], Floats], roughness: float, albedo: float
     ) -> Lobe:
         scale = 0.25 * real("albedo", albedo)
+        if not 0 < roughness <= 1:
+            raise ValueError(f"roughness is {roughness:g}; allowed: above 0, up to 1")
 
         def brdf(theta: Floats, phi: Floats, to_theta: Floats, to_phi: Floats) -> Floats:
             (a, b, c), (to_a, to_b, to_c) = _direction(theta, phi), _direction(to_theta, to_phi)

@@ -14,18 +14,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Union
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from etendue.lobes import Lobe
 from etendue.ranges import finite, real, whole
+from etendue.scene import Scene, Source, as_scene
 from etendue.theories import Radiance
 
 if TYPE_CHECKING:
     from etendue._etendue import Run
-    from etendue.scene import Scene
 
 __all__ = ["Chain", "Light", "Lobe", "Map", "Mask", "Operator", "Warp"]
 
@@ -152,6 +152,8 @@ class Map:
         return cls(np.diag([1, 1, scale, n]), np.array([0, 0, after - scale * a, 0]), f"refraction {n:g} at {a:g} rad", law)
 
     def __matmul__(self, first: Map) -> Map:
+        if not isinstance(first, Map):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise TypeError(f"a map composes with a map, not with {type(first).__name__}; put both into a Chain")
         return Map(self.matrix @ first.matrix, self.matrix @ first.offset + self.offset, f"{self.name} @ {first.name}")
 
     @property
@@ -241,6 +243,8 @@ class Mask:
     def bars(cls, count: int, pitch: float, fill: float, axis: Axis = "x") -> Mask:
         """Opaque bars whose centres are a pitch in metres apart along an axis, as `Bars` of a scene. `fill` is width / pitch."""
         n, p, share, of = whole("count", count, 1, 10**9), real("pitch", pitch, nonzero=True), real("fill", fill), _axis(axis)
+        if not 0 <= share <= 1:
+            raise ValueError(f"fill is {share:g}; allowed: 0 to 1")
 
         def transmission(x: Floats, y: Floats) -> Any:
             at = of(x, y) / p + 0.5 * n
@@ -283,13 +287,13 @@ class Light:
     radiance: Radiance
 
     @classmethod
-    def rectangle(cls, size: Pair, radiance: float = 1.0, center: Pair = 0.0) -> Light:
+    def rectangle(cls, size: Pair, *, radiance: float = 1.0, center: Pair = 0.0) -> Light:
         """A Lambertian rectangle of a size in metres, in the plane where rays begin."""
         (inside, name), scale = _rectangle(size, center), real("radiance", radiance)
         return cls(f"{name}, radiance {scale:g}", lambda x, y, u, v: scale * inside(x, y))
 
     @classmethod
-    def gaussian(cls, position: float, slope: float, radiance: float = 1.0) -> Light:
+    def gaussian(cls, position: float, slope: float, *, radiance: float = 1.0) -> Light:
         """Light with the standard deviations `position` in metres and `slope` about the central ray."""
         p, s, scale = real("position", position, nonzero=True), real("slope", slope, nonzero=True), real("radiance", radiance)
 
@@ -316,17 +320,24 @@ class Chain:
     operators: Sequence[Operator] = ()
 
     def __post_init__(self) -> None:
+        if isinstance(self.operators, Map):
+            raise TypeError("the operators of a chain are a list of maps, masks and lobes, not one of them")
         object.__setattr__(self, "operators", tuple(self.operators))
         if not callable(self.light) or not all(callable(getattr(operator, "after", None)) for operator in self.operators):
             raise TypeError("a chain has a light, which is a function of rays, and a list of maps, masks and lobes")
 
+    def __call__(self, x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike) -> Floats:
+        """`radiance`, so that a chain is a radiance function, and the light of another chain."""
+        return self.radiance(x, y, u, v)
+
     @classmethod
-    def of_plane(cls, scene: Scene, plane: str) -> Chain:
+    def of_plane(cls, scene: Scene | Source, plane: str) -> Chain:
         """The chain from the light of a scene to a plane, between parallel planes or along mirrors, interfaces and lenses.
 
         Its maps are those of Étendue's theory. Masks on the first leg are included; what else stands beside the path is not. Raises `KeyError`
         if there is no such plane, and `ValueError` if no chain of these operators leads to it, or the light is no rectangle, disc or spot.
         """
+        scene = as_scene(scene)
         names = [known.name for known in scene.planes]
         if plane not in names:
             raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
@@ -365,11 +376,18 @@ class Chain:
 
     def replace(self, index: int, *operators: Operator) -> Chain:
         """The chain with another operator at an index, or with several, or with none."""
-        i = range(len(self))[index]
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"index is {index}; the chain has {len(self)} operators")
+        i = index % len(self)
         return Chain(self.light, [*self.operators[:i], *operators, *self.operators[i + 1 :]])
 
-    def __getitem__(self, index: slice) -> Chain:
-        return Chain(self.light, self.operators[index])
+    @overload
+    def __getitem__(self, index: slice) -> Chain: ...
+    @overload
+    def __getitem__(self, index: int) -> Operator: ...
+    def __getitem__(self, index: slice | int) -> Chain | Operator:
+        """The chain of some operators, or one operator."""
+        return Chain(self.light, self.operators[index]) if isinstance(index, slice) else self.operators[index]
 
     def __len__(self) -> int:
         return len(self.operators)

@@ -243,7 +243,7 @@ def mtf(spectra: Spectrum | Plane | Sequence[Spectrum | Plane], *, along: Litera
     """
     every = list(spectra) if isinstance(spectra, Sequence) else [spectra]
     if along not in ("rho", "nu") or (len(every) != 1 and len(every) < 4):
-        raise ValueError(f"along is {along!r} for {len(every)} spectra; allowed: 'rho' or 'nu', and 1 spectrum or at least 4")
+        raise ValueError(f"there are {len(every)} spectra along {along!r}; allowed: 1 spectrum or at least 4, along 'rho' or 'nu'")
     axes = [one.slices if isinstance(one, Plane) else one for one in every]
     first = axes[0]
     if not all(np.array_equal(getattr(one, name), getattr(first, name)) for one in axes for name in ("azimuth", "rho", "nu")):

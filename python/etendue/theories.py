@@ -76,6 +76,8 @@ def compare(
     if isinstance(prediction, (str, os.PathLike)):
         with np.load(prediction) as file:
             prediction = dict(file)
+    if not isinstance(measurement, (Measurement, Spectrum)):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError(f"compare takes what `measure` or `spectrum` returns, not {type(measurement).__name__}; `run` does all stages")
     if isinstance(measurement, Spectrum):
         if measurement.measurement is None:
             raise ValueError("this spectrum was pickled, which leaves out its batches; compute it again to compare it")
@@ -162,8 +164,11 @@ class _Sums:
         self.window: dict[str, dict[str, Any]] = json.loads(axes["window"])
         self.stated = {array: values for array, values in stated.items() if array not in (*FUNCTIONS, "steps")}
         self.function: Function = stated["radiance" if "radiance" in stated else "spectrum"]
-        names = [str(name) for name in stated.get("parameters", [])]
-        values = np.asarray(stated.get("values", []), dtype=float)
+        known = (*FUNCTIONS, *TEXTS, "values", "steps", "derivatives", "sigma", "azimuth", "rho", "nu")
+        if unknown := [key for key in stated if key not in known]:
+            raise ValueError(f"plane {name} has {', '.join(unknown)}; allowed beside a function: {', '.join(known)}")
+        names = [str(name) for name in np.atleast_1d(np.asarray(stated.get("parameters", []), dtype=object))]
+        values = np.atleast_1d(np.asarray(stated.get("values", []), dtype=float))
         self.steps = np.asarray(stated.get("steps", STEP * np.where(values == 0, 1, abs(values))), dtype=float)
         if not len(names) == values.size == self.steps.size or not (self.steps > 0).all():
             raise ValueError(f"plane {name} has {len(names)} parameters, {values.size} values and {self.steps.size} steps above 0")
@@ -203,6 +208,9 @@ class _Sums:
     def arrays(self) -> dict[str, Any]:
         means = self.sums[1:].mean(axis=1) / self.points
         found = {**self.stated, "replicates": self.sums[0] / self.points}
+        if not self.sums[0].any():
+            # A function that predicts darkness is certain of it, as an array is.
+            found["slices"] = found.pop("replicates")[0]
         if self.settings[1:]:
             found["derivatives"] = (means[::2] - means[1::2]) / (2 * self.steps[:, None, None, None])
         return found

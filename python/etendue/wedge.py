@@ -99,7 +99,7 @@ class Wedge:
 
     def __repr__(self) -> str:
         share, spacing = self.inside, self.spacing
-        return f"<etendue.Wedge: {share[0]:.4f} ± {share[1]:.4f} of the power, views {spacing[0]:.4g} ± {spacing[1]:.2g} m apart>"
+        return f"<etendue.Wedge: {share[0]:.4f} ± {share[1]:.4f} of the power; views at most {spacing[0]:.4g} ± {spacing[1]:.2g} m apart>"
 
     def _within(self, rho: Floats, lobes: tuple[float, ...]) -> NDArray[np.bool_]:
         lines = [rho + h * self._of.nu for h in self.inverse_depths]

@@ -263,6 +263,9 @@ def test_chains_print_and_change():
     lines = str(chain).splitlines()
     assert lines[0] == "source    rectangle 0.2 x 0.1 m, radiance 1" and len(lines) == 4
     assert lines[1].startswith("map       travel 1 m ") and lines[1].endswith("(Eq. 3)")
+    assert chain[1].name.startswith("5 bars") and np.array_equal(chain(0.1, 0, 0, 0), chain.radiance(0.1, 0, 0, 0))
+    with pytest.raises(IndexError, match="the chain has 3 operators"):
+        chain.replace(9)
     assert len(chain[:2]) == 2 and len(chain.then(Map.mirror())) == 4
     assert [operator.name for operator in chain.replace(-1).operators] == [operator.name for operator in chain.operators[:2]]
     assert "travel 1 m @ lens, f = 2 m" in repr(Map.travel(1) @ Map.lens(2))
@@ -294,6 +297,10 @@ def test_chains_print_and_change():
     (lambda: Lobe.lambertian(1).sampled(0), "nodes is 0"),
     (lambda: Lobe.lambertian(1).sampled(8, ((1, 0), (0, 1))), "from a lower"),
     (lambda: Chain(Light.rectangle(1), [Map.travel]), "a list of maps"),
+    (lambda: Chain(Light.rectangle(1), Map.mirror()), "a list of maps"),
+    (lambda: Map.mirror() @ Mask.constant(1), "not with Mask"),
+    (lambda: Mask.bars(3, 1, 1.5), "fill is 1.5"),
+    (lambda: Lobe.ggx(2), "roughness is 2"),
     (lambda: Chain(Light.rectangle(1)).radiance("x", 0, 0, 0), "x is"),
 ])  # fmt: skip
 def test_wrong_numbers_are_refused(wrong, message):

@@ -125,6 +125,10 @@ def test_a_theory_far_below_the_noise_fails(measured):
     assert plane.verdict == "fail" and plane.report["quadrature_error"] < 0.05 < 0.3 * plane.report["noise_limit"]
 
 
+def test_a_function_that_predicts_darkness_fails(measured):
+    assert etendue.compare(measured, {"receiver": lambda x, y, u, v: 0 * x}).verdict == "fail"
+
+
 def test_spectra_of_rays(behind_hole):
     random = np.random.default_rng(1)
     x, y, u, v = (half * random.uniform(-1, 1, 200_000) for half in (0.3, 0.3, 0.25, 0.25))
@@ -172,9 +176,12 @@ def test_theories_that_do_not_fit_are_refused(measured):
         ({"radiance": 3}, "one function"),
         ({"radiance": np.add, "spectrum": np.add}, "one function"),
         ({"radiance": np.add, "parameters": ["d"]}, "1 parameters, 0 values"),
+        ({"radiance": np.add, "parameter": ["d"]}, "parameter; allowed beside a function"),
     ]:
         with pytest.raises(ValueError, match=message):
             etendue.compare(measured, {"receiver": theory})
+    with pytest.raises(TypeError, match="not dict"):
+        etendue.compare(measured.scene.file, {"receiver": np.add})
     with pytest.raises(TypeError, match="not ndarray"):
         etendue.compare(measured, np.zeros(3))
     with pytest.raises(ValueError, match="no plane 'elsewhere'"):

@@ -3,12 +3,12 @@
 use crate::args::SpectrumArgs;
 use crate::measure::MeasureStage;
 use crate::print::deliver;
-use etendue_field::{VirtualPlane, brief};
+use etendue_field::{VirtualPlane, brief, percent, uncertain};
 use etendue_pipeline::Run;
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_scene::Scene;
 use etendue_spectrum::bandwidth::Along;
-use etendue_spectrum::estimate::TooFewBatches;
+use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_store::{Failure, Method};
@@ -27,8 +27,10 @@ pub(crate) fn spectrum(args: &SpectrumArgs) -> Result<u8, Failure> {
         ..SceneSource::file(&args.file, &args.set)
     };
     // The default window is around the rays, whose extent is known when they have been read.
-    let half = half_widths(&load::scene(&source([1.0; 2]), |_| ())?);
-    let source = source(half);
+    let source = source(half_widths(
+        &load::scene(&source([1.0; 2]), |_| ())?,
+        &args.set,
+    ));
     let run = Run::read(&source, Method::Given, |_| ())?;
     let folder = args.out.or_named(&run.scene.name);
     let stage = MeasureStage {
@@ -53,33 +55,41 @@ fn numbers(
     index: usize,
     plane: &VirtualPlane,
 ) -> Result<String, TooFewBatches> {
-    let (power, tally) = (
-        CrossPower::new(measurement, index)?,
-        measurement.tally(index),
-    );
-    let number = |name: &str, unit: &str, of: Option<Uncertain>| match of {
-        Some(Uncertain { value, error }) => {
-            format!("{name:<16}{} ± {} {unit}", brief(value), brief(error))
-        }
-        None => format!("{name:<16}–"),
+    let power = CrossPower::new(measurement, index)?;
+    let slices = estimate::slices(measurement, index)?;
+    let noise = slices.variance.sum().sqrt() / slices.mean.norm();
+    let number = |of: Option<Uncertain>, unit: &str| {
+        let stated = |Uncertain { value, error }| format!("{} {unit}", uncertain(value, error));
+        of.map_or_else(|| "not above the noise".to_owned(), stated)
     };
     let widest = |along: Along| power.bandwidth(along).map(|widest| widest.value);
-    let rays = format!(
-        "{} of {} rays in the window",
-        tally.inside,
-        measurement.emitted()
-    );
-    Ok([
-        format!("{:<16}{rays}", plane.name),
-        number(
-            "shear slope",
-            "m",
-            power.statistic(|p| shear_slope(p, &plane.grid)),
+    let (inside, all) = (measurement.tally(index).inside, measurement.emitted());
+    let VirtualPlane { window, grid, .. } = plane;
+    let rows = [
+        ("rays", format!("{inside} of {all} in the window")),
+        ("window", format!("x {:?}, u {:?}", window.x, window.u)),
+        (
+            "frequencies",
+            format!(
+                "rho to {} cycles/m, nu to {} cycles per unit slope",
+                brief(grid.rho.max()),
+                brief(grid.nu.max())
+            ),
         ),
-        number("95 % along rho", "cycles/m", widest(Along::Rho)),
-        number("95 % along nu", "cycles per unit slope", widest(Along::Nu)),
-    ]
-    .join("\n"))
+        ("noise", format!("{} of the spectrum", percent(noise, 1))),
+        (
+            "shear slope",
+            number(power.statistic(|p| shear_slope(p, grid)), "m"),
+        ),
+        ("95 % along rho", number(widest(Along::Rho), "cycles/m")),
+        (
+            "95 % along nu",
+            number(widest(Along::Nu), "cycles per unit slope"),
+        ),
+    ];
+    Ok(rows
+        .map(|(name, value)| format!("{name:<16}{value}"))
+        .join("\n"))
 }
 
 /// A scene with the rays as its light, and one plane at the origin of the file.
@@ -103,8 +113,9 @@ fn text(args: &SpectrumArgs, [x, u]: [f64; 2]) -> String {
     )
 }
 
-/// Half-widths of a window along positions and along slopes around the rays of a light.
-fn half_widths(scene: &Scene) -> [f64; 2] {
+/// Half-widths of the window along positions and along slopes: those that are set, and otherwise
+/// around the rays of the light.
+fn half_widths(scene: &Scene, set: &[(String, String)]) -> [f64; 2] {
     let light = &scene.light;
     let reach = |axis: usize| {
         light
@@ -113,9 +124,16 @@ fn half_widths(scene: &Scene) -> [f64; 2] {
             .into_iter()
             .fold(0.0, f64::max)
     };
-    let [x, u] = [
-        reach(0).max(reach(1)),
-        light.steepest(0).max(light.steepest(1)),
+    let slope = light.steepest(0).max(light.steepest(1));
+    let around = [
+        reach(0).max(reach(1)).max(1e-6),
+        slope.clamp(1e-6, MAX_SLOPE),
     ];
-    [x.max(1e-6), u.clamp(1e-6, MAX_SLOPE)]
+    let window = &scene.planes[0].window;
+    let is_set = |name: &str| set.iter().any(|(path, _)| path == name || path == "window");
+    let stated = [("window.x", window.x), ("window.u", window.u)];
+    std::array::from_fn(|i| match stated[i] {
+        (name, profile) if is_set(name) => profile.half_width(),
+        _ => around[i],
+    })
 }

@@ -32,6 +32,9 @@ const CHANGES: [ConventionChange; 6] = [
 
 /// The number of standard errors by which a factor is different from 1.
 const DIFFERENT: f64 = 4.0;
+/// The smallest p-value that a change is named with. A factor near 1 that explains a part of another
+/// mistake has a smaller one.
+const NAMED: f64 = 0.05;
 
 /// States with which change a prediction would agree with the measurement of plane `index`, if
 /// there is one: a factor, or coordinates that are reversed or exchanged, or both. `variance` is
@@ -66,7 +69,7 @@ pub(crate) fn hint(
             let times = differs.then(|| format!("multiplied by {}", four_digits(factor)));
             let reversed = Some(change.0.to_owned()).filter(|words| !words.is_empty());
             let words: Vec<String> = times.into_iter().chain(reversed).collect();
-            (test.accepts(Some(p_value)) && !words.is_empty()).then(|| {
+            (p_value >= NAMED && !words.is_empty()).then(|| {
                 format!(
                     "the prediction would agree, p = {p_value:.3}, if it were {}",
                     words.join(" and ")

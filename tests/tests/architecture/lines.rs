@@ -13,13 +13,13 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4339,
+        4357,
         "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had",
     ),
     (
         "compare",
         2927,
-        3062,
+        3065,
         "no slope is known without photons; a warning names the convention that a failed prediction mistakes",
     ),
     (
