@@ -126,6 +126,21 @@ def test_the_notebook():
     assert all(abs(measured - theory) < 0.25 for _, measured, theory in rows)  # an eighth of the step between frequencies of the ridge
 
 
+@pytest.mark.parametrize("name", ["fog", "motion"])
+def test_notebooks_of_theories(name):
+    """Right theories pass and planted faults fail, in motion with the most rays."""
+    nbclient = pytest.importorskip("nbclient")
+    import nbformat
+
+    notebook = nbformat.read(Path(__file__).parents[2] / "docs" / f"{name}.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=600).execute()
+    said = "".join(output.get("text", "") for cell in notebook.cells for output in cell.get("outputs", []))
+    lines = [line for line in said.rpartition("2^19 rays")[2].splitlines() if "the theory" in line or "planted" in line]
+    assert len(lines) > 4
+    for line in lines:
+        assert line.endswith("fail" if "planted" in line else "pass"), said
+
+
 @pytest.mark.parametrize("integrator", ["prb", "direct_projective"])
 def test_integrators_for_derivatives_see_the_same_light(integrator, scene, photons):
     assert p(scene, photons, integrator=integrator) > LEVEL
