@@ -246,7 +246,7 @@ def test_advice_on_views():
         spacing = wedge.spacing[0]
         assert wedge.aliased(spacing)[0] <= limit < wedge.aliased(1.1 * spacing)[0] and wedge.spacing[1] == 0
         assert wedge.chai_spacing == pytest.approx(1 / (wedge.cutoff[0] * (1 / 0.8 - 1 / 2.7)))
-        assert "of the power, views" in repr(wedge)
+        assert "of the power; views at most" in repr(wedge)
     assert wedge.aliased(0.02)[0] == 0
     # Textures have up to 9 cycles/m, so slopes up to 22; the window adds 2.
     assert 15 < found.wedge(0.8, 2.7).cutoff[0] < 24.5

@@ -153,5 +153,5 @@ def test_mtf_of_blurs(blur, truth, count):
 def test_wrong_spectra_are_refused():
     (one,) = images(lambda r, shape: r.uniform(-0.1, 0.1, shape), 1)
     for spectra, keys in [([one, one], {}), (one, {"along": "x"})]:
-        with pytest.raises(ValueError, match="allowed: 'rho' or 'nu', and 1 spectrum or at least 4"):
+        with pytest.raises(ValueError, match="allowed: 1 spectrum or at least 4, along 'rho' or 'nu'"):
             etendue.mtf(spectra, **keys)
