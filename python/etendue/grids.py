@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from etendue import types
 from etendue.difference import Sample
 from etendue.plot import plotted
-from etendue.rays import spectrum
+from etendue.rays import around
+from etendue.scene import Scene
 from etendue.separable import BLOCK, Axis, compressed_field, full, slices_of
 from etendue.wedge import Wedge
 
@@ -161,10 +162,11 @@ def grid_spectrum(
         if frequencies.get("azimuths", 1) != 1:
             raise ValueError(f"azimuths is {frequencies.get('azimuths')} for [x, u]; allowed: 1, or nothing")
         frequencies, window = {**frequencies, "azimuths": 1}, {"x": window["x"], "u": window["u"]}
-    # The estimator checks window and frequencies, and gives the axes.
-    at_zero = spectrum(*np.zeros((4, 3)), window=window, frequencies=frequencies, batches=3, threads=1)
-    rho, nu = at_zero.rho, at_zero.nu[at_zero.nu.size // 2 :]
-    turns = np.cos(at_zero.azimuth), np.sin(at_zero.azimuth)
+    # A scene checks window and frequencies, and gives the axes.
+    plane = Scene(around(window, frequencies), name="grid")._run.axes(0)  # pyright: ignore[reportPrivateUsage]
+    azimuth, upper, all_nu = (np.asarray(plane[name], float) for name in ("azimuth", "rho", "nu"))
+    rho, nu = np.concatenate([-upper[:0:-1], upper]), all_nu[all_nu.size // 2 :]
+    turns = np.cos(azimuth), np.sin(azimuth)
     axes: list[Axis] = []
     for name, turn, at in (("x", turns[0], rho), ("y", turns[1], rho), ("u", turns[0], nu), ("v", turns[1], nu)):
         profile = window.get(name) or window["x" if name == "y" else "u"]
@@ -209,7 +211,7 @@ def grid_spectrum(
         estimates = np.concatenate([np.zeros((0, *found.shape), complex), *parts])
     kept = [axis for axis in axes if axis.name in given]
     spacing, half = {axis.name: axis.spacing for axis in kept}, {axis.name: axis.half_width for axis in kept}
-    return GridSpectrum(at_zero.azimuth, rho, at_zero.nu, found, sigma, spacing, half, estimates, bool(replicates))
+    return GridSpectrum(azimuth, rho, all_nu, found, sigma, spacing, half, estimates, bool(replicates))
 
 
 def _noise_dof(estimates: Complex) -> float | None:

@@ -116,7 +116,7 @@ def spectrum(
     """
     rays = columns(x, y, u, v, weight)
     group, batches = groups(rays[0].size, batch, batches)
-    plane = Scene(_around(window, frequencies), method="given", name="rays")
+    plane = Scene(around(window, frequencies), method="given", name="rays")
     with told(progress) as tell:
         found: dict[str, Any] = plane._run.spectrum(  # pyright: ignore[reportPrivateUsage]
             rays, group, batches, thread_count(threads), tell
@@ -164,7 +164,7 @@ def groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np
     return group.astype(np.uint32), names.size
 
 
-def _around(window: types.Window, frequencies: types.Frequencies) -> types.Scene:
+def around(window: types.Window, frequencies: types.Frequencies) -> types.Scene:
     """A scene with one plane that has this window and these frequencies, which are checked as in any scene."""
     return {
         "light": {"Rectangle": {"center": [0, 0, 0], "size": [1, 1]}},

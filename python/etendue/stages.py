@@ -114,8 +114,6 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
 
 def compare_with(measurement: Measurement, prediction: Prediction | None, threads: int | None) -> Result:
     """Compares a measurement with a prediction of its scene, which is predicted if none is given."""
-    if not isinstance(measurement, Measurement):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise TypeError(f"compare takes a measurement, not {type(measurement).__name__}: `measure` returns one, and `run` does all stages")
     scene = measurement.scene
     if prediction is None:
         prediction = predict(scene, threads=threads)

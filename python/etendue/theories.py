@@ -187,13 +187,17 @@ class _Sums:
         while self.points < points:
             until = min(points, self.points + max(BLOCK // REPLICATES, 1))
             sequence = np.arange(self.points, until)[:, None] * STEPS
-            places = (sequence + self.shifts) % 1
+            nodes, weights = self.nodes((sequence + self.shifts) % 1)
             for sums, setting in zip(self.sums, self.settings):
-                sums += self.added(places, setting)
+                sums += self.added(nodes, weights, setting)
             self.points = until
 
-    def added(self, places: Floats, setting: Mapping[str, float]) -> Complexes:
-        """The sums over new points, which are uniform in [0, 1)⁴, [replicate, azimuth, rho, nu]."""
+    def nodes(self, places: Floats) -> tuple[Floats, Floats]:
+        """Nodes of the integral for places that are uniform in [0, 1)⁴, [replicate, point, 4], and their weights [replicate, point]."""
+        raise NotImplementedError
+
+    def added(self, nodes: Floats, weights: Floats, setting: Mapping[str, float]) -> Complexes:
+        """The sums over new nodes, [replicate, azimuth, rho, nu]."""
         raise NotImplementedError
 
     def checked(self, values: ArrayLike, shape: tuple[int, ...], kinds: str) -> NDArray[Any]:
@@ -234,35 +238,39 @@ class _Sums:
 
 
 class _Radiance(_Sums):
-    def added(self, places: Floats, setting: Mapping[str, float]) -> Complexes:
-        draws = [ProfileSampler(self.window[name]).draw(places[..., i].ravel()) for i, name in enumerate("xyuv")]
-        rays = [place for place, _ in draws]
-        # The function may change its arguments.
-        values = self.checked(self.function(*(column.copy() for column in rays), **setting), rays[0].shape, "buif")
+    def nodes(self, places: Floats) -> tuple[Floats, Floats]:
+        draws = [ProfileSampler(self.window[name]).draw(places[..., i]) for i, name in enumerate("xyuv")]
         # A batch holds the mean over all batches.
-        weight = values / (np.prod([density for _, density in draws], axis=0) * REPLICATES)
-        batch = np.repeat(np.arange(REPLICATES, dtype=np.uint32), places.shape[1])
-        return self.run.sums(self.plane, [*rays, weight], batch, REPLICATES, self.threads)
+        weights = 1 / (np.prod([density for _, density in draws], axis=0) * REPLICATES)
+        return np.array([place.ravel() for place, _ in draws]), weights
+
+    def added(self, nodes: Floats, weights: Floats, setting: Mapping[str, float]) -> Complexes:
+        # The function may change its arguments.
+        values = self.checked(self.function(*nodes.copy(), **setting), nodes[0].shape, "buif")
+        batch = np.repeat(np.arange(REPLICATES, dtype=np.uint32), weights.shape[1])
+        return self.run.sums(self.plane, [*nodes, values * weights.ravel()], batch, REPLICATES, self.threads)
 
 
 class _Spectrum(_Sums):
-    """Ŝ(Ω) = ∫ ℓ̂(Ω − k) Ŵ(k) dk, with points k of density ∏ (1 + t²)^(−3/2)/2, t = 2hk, which falls as the transform of a Hann window does."""
+    """Ŝ(Ω) = ∫ ℓ̂(Ω − k) Ŵ(k) dk, with nodes k of density ∏ (1 + t²)^(−3/2)/2, t = 2hk, which falls as the transform of a Hann window does."""
 
-    def added(self, places: Floats, setting: Mapping[str, float]) -> Complexes:
+    def nodes(self, places: Floats) -> tuple[Floats, Floats]:
         if any(list(profile) != ["Hann"] for profile in self.window.values()):
             raise ValueError(f"the window of plane {self.name} has other profiles than Hann, and a spectrum function needs Hann")
         half = np.array([self.window[name]["Hann"] for name in "xyuv"])
         place = 2 * places - 1
         rest = np.maximum(1 - place**2, np.finfo(float).tiny)
         t = place / np.sqrt(rest)
-        weight = (np.sinc(t) + 0.5 * (np.sinc(t - 1) + np.sinc(t + 1))) / rest**1.5
-        weight = weight.prod(axis=-1)
+        weights = (np.sinc(t) + 0.5 * (np.sinc(t - 1) + np.sinc(t + 1))) / rest**1.5
+        return t / (2 * half), weights.prod(axis=-1)
+
+    def added(self, nodes: Floats, weights: Floats, setting: Mapping[str, float]) -> Complexes:
         sums = np.zeros((REPLICATES, self.omega[0].size), complex)
         block = max(BLOCK // self.omega[0].size, 1)
-        for total, moves, weights in zip(sums, t / (2 * half), weight):
-            for first in range(0, weights.size, block):
+        for total, moves, weight in zip(sums, nodes, weights):
+            for first in range(0, weight.size, block):
                 move = moves[first : first + block]
                 frequencies = [axis - column[:, None] for axis, column in zip(self.omega, move.T)]
                 values = self.checked(self.function(*frequencies, **setting), frequencies[0].shape, "buifc")
-                total += weights[first : first + block] @ values
+                total += weight[first : first + block] @ values
         return sums.reshape(self.shape)

@@ -1,7 +1,6 @@
 //! Searches a change with which a prediction that failed would agree with the measurement.
 
 use crate::residuals::Residuals;
-use crate::verdict::Test;
 use etendue_field::{Complex, Slices, brief};
 use etendue_spectrum::Measurement;
 use ndarray::{Array3, Axis, Zip};
@@ -41,22 +40,24 @@ const NAMED: f64 = 0.05;
 /// the variance of the mean residual.
 pub(crate) fn hint(
     (measurement, index): (&Measurement, usize),
+    measured: &Slices,
     predicted: &Slices,
     replicates: &[Slices],
     variance: &Array3<f64>,
-    test: &Test,
+    seed: u64,
 ) -> Option<String> {
-    let dark = Slices::zeros(predicted.grid);
-    let mean = Residuals::new(measurement, index, &dark).mean();
-    let fit = |change| Fit::new(&changed(predicted, change).half, &mean, variance);
+    let fit = |change| {
+        let changed = changed(predicted, change);
+        (change, Fit::new(&changed.half, &measured.half, variance))
+    };
     let closest = CHANGES
+        .map(fit)
         .into_iter()
-        .min_by(|a, b| fit(*a).left.total_cmp(&fit(*b).left));
-    [Some(UNCHANGED), closest]
+        .min_by(|(_, a), (_, b)| a.left.total_cmp(&b.left));
+    [Some(fit(UNCHANGED)), closest]
         .into_iter()
         .flatten()
-        .find_map(|change| {
-            let Fit { factor, error, .. } = fit(change);
+        .find_map(|(change, Fit { factor, error, .. })| {
             let scaled = |slices: &Slices| {
                 let mut slices = changed(slices, change);
                 slices.half.mapv_inplace(|value| value * factor);
@@ -64,7 +65,7 @@ pub(crate) fn hint(
             };
             let replicates: Vec<Slices> = replicates.iter().map(scaled).collect();
             let residuals = Residuals::between(measurement, index, &scaled(predicted), &replicates);
-            let p_value = residuals.p_value(test.seed)?;
+            let p_value = residuals.p_value(seed)?;
             let differs = (factor - 1.0).abs() > DIFFERENT * error;
             let times = differs.then(|| format!("multiplied by {}", four_digits(factor)));
             let reversed = Some(change.0.to_owned()).filter(|words| !words.is_empty());

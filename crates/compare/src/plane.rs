@@ -103,7 +103,9 @@ pub fn compare(
     let mut report = sides.report(&sides.judged(test))?;
     if report.exact_verdict() == Verdict::Fail && !test.accepts(report.p_value) {
         let plane = (measurement, index);
-        let hint = hint(plane, &predicted, &prediction.replicates, &variance, test);
+        let replicates = &prediction.replicates;
+        let (measured, seed) = (&estimate.mean, test.seed);
+        let hint = hint(plane, measured, &predicted, replicates, &variance, seed);
         report.warnings.extend(hint);
     }
     let measured_sigma = measured_variance.map(|variance| variance.mapv(f64::sqrt));

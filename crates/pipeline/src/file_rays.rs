@@ -1,9 +1,10 @@
 //! The rays of a ray file, each once, in place of photons.
 
-use etendue_field::{Crossing, Ledger, Light, PhotonSource, TwoPlane};
+use etendue_field::{Crossing, Ledger, Light, Mask, PhotonSource, TwoPlane};
 use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_store::Failure;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::{ChainAction, ChainStep};
 
 /// Number of rays that are recorded at a time.
@@ -16,7 +17,7 @@ pub(crate) struct FileRays {
     /// The rays of each batch, at the light.
     batches: Vec<Vec<Crossing>>,
     /// The steps from the light to each plane.
-    chains: Vec<Vec<ChainStep>>,
+    chains: Vec<Vec<FileRayStep>>,
 }
 
 impl FileRays {
@@ -52,10 +53,8 @@ impl FileRays {
         }
         let chains = scene.planes.iter().map(|plane| {
             let steps = Applicability::new(scene, plane).chain_steps(scene, plane);
-            let is_known = |step: &ChainStep| {
-                matches!(step.action, ChainAction::Map(_) | ChainAction::Mask(_))
-            };
-            steps.filter(|steps| steps.iter().all(is_known)).ok_or_else(|| {
+            let known = steps.and_then(|steps| steps.into_iter().map(FileRayStep::of).collect());
+            known.ok_or_else(|| {
                 Failure::bad_input(format!(
                     "given rays do not reach plane {}; allowed: planes perpendicular to the central ray, before the first surface",
                     plane.name
@@ -69,14 +68,30 @@ impl FileRays {
     }
 }
 
+/// A step of a chain that acts on one ray at a time.
+#[derive(Debug)]
+enum FileRayStep {
+    Map(AffineMap<4>),
+    Mask(Mask),
+}
+
+impl FileRayStep {
+    fn of(step: ChainStep) -> Option<Self> {
+        match step.action {
+            ChainAction::Map(map) => Some(Self::Map(map.rays())),
+            ChainAction::Mask(mask) => Some(Self::Mask(mask)),
+            ChainAction::SlopeCosine | ChainAction::AngleCosine | ChainAction::Other => None,
+        }
+    }
+}
+
 /// A ray after the steps of a chain.
-fn after(steps: &[ChainStep], Crossing { ray, mut weight }: Crossing) -> Crossing {
+fn after(steps: &[FileRayStep], Crossing { ray, mut weight }: Crossing) -> Crossing {
     let mut z = [ray.x, ray.y, ray.u, ray.v];
     for step in steps {
-        match &step.action {
-            ChainAction::Map(map) => z = map.rays().apply(z),
-            ChainAction::Mask(mask) => weight *= mask.transmittance(z[0], z[1]),
-            _ => {}
+        match step {
+            FileRayStep::Map(map) => z = map.apply(z),
+            FileRayStep::Mask(mask) => weight *= mask.transmittance(z[0], z[1]),
         }
     }
     let [x, y, u, v] = z;

@@ -135,17 +135,21 @@ pub fn data(
     });
     let file = format!("{}.json", summary.scene);
     let method = match summary.method {
-        Method::Photons => "",
-        _ => " --method backward",
+        Method::Given => None,
+        Method::Photons => Some(""),
+        Method::Backward | Method::Even => Some(" --method backward"),
     };
-    let repeat = format!(
-        "\nto repeat: save the scene below as {file}, and run etendue run {} --photons {} --seed {}{method}",
-        shell_word(&file),
-        summary.photons,
-        summary.seed,
-    );
+    // Rays that were given cannot be traced again.
+    let repeat = method.map_or(String::new(), |method| {
+        format!(
+            "\nto repeat: save the scene below as {file}, and run etendue run {} --photons {} --seed {}{method}",
+            shell_word(&file),
+            summary.photons,
+            summary.seed,
+        )
+    });
     let provenance = format!(
-        "etendue {}, {} {} in {} batches, seed {}, α = {}\nscene hash {}{}",
+        "etendue {}, {} {} in {} batches, seed {}, α = {}\nscene hash {}{repeat}",
         summary.version,
         grouped(summary.photons),
         summary.method.words(),
@@ -153,11 +157,6 @@ pub fn data(
         summary.seed,
         summary.alpha,
         summary.scene_hash,
-        if summary.method == Method::Given {
-            ""
-        } else {
-            &repeat
-        },
     );
     let run = RunData {
         scene: &summary.scene,
