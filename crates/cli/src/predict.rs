@@ -9,9 +9,6 @@ use etendue_pipeline::{Leader, load};
 use etendue_store::stored::Index;
 use etendue_store::{Failure, PREDICTION, predictions, theory};
 
-/// The file of predictions for other programs.
-const THEORY: &str = "predictions.npz";
-
 /// Runs `etendue predict`; returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     predict_with(args, None)
@@ -28,7 +25,7 @@ pub(crate) fn predict_with(
         warnings::tell(scene, args.work.quiet);
         run.check_limits()?;
         let mut files = predictions::names(&scene.planes);
-        files.extend(args.npz.then(|| THEORY.to_owned()));
+        files.extend(args.npz.then(|| theory::FILE.to_owned()));
         let mut results = load::stage(
             &args.out.folder,
             PREDICTION,
@@ -40,7 +37,7 @@ pub(crate) fn predict_with(
         let predictions = run.predictions(workers, &Terminal::new(args.work.quiet))?;
         let content = predictions::write(&mut results, scene, run.method, &predictions)?;
         if args.npz {
-            results.write(THEORY, &theory::bytes(&scene.planes, &predictions)?)?;
+            results.write(theory::FILE, &theory::bytes(&scene.planes, &predictions)?)?;
         }
         Ok((results, content))
     })?;

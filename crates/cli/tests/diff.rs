@@ -77,7 +77,10 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a half",
         4,
-        &["both results have seed 1, and share photons"],
+        &[
+            "both results have seed 1, and share photons",
+            "photons are 65536 and 32768",
+        ],
     );
     // Other scenes.
     let pitch = [
@@ -107,6 +110,82 @@ fn two_results_are_told_apart_when_they_differ() {
         4,
         &["the frequencies ρ differ: 13 up to 6 and 15 up to 7"],
     );
+}
+
+/// Blockers whose sides are 60 µm wider: without pairs, noise is ten times the difference.
+#[test]
+fn pairs_show_changes_below_the_noise() {
+    let wide = "--set blockers.0.fill=0.6006 --seed 1";
+    let folder = runs(&[
+        "--photons 2^16 --save batches --seed 1 --out a",
+        "--photons 2^16 --save batches --seed 1 --out again --threads 1",
+        "--photons 2^16 --save batches --seed 2 --out other",
+        "--photons 2^16 --seed 1 --out plain",
+        &format!("--photons 2^16 --save batches {wide} --out b"),
+    ]);
+    let path = folder.path();
+    for arguments in ["--seed 1 --out ma", &format!("{wide} --out mb")] {
+        let output = call(
+            path,
+            &format!("measure small.ron --photons 2^16 {arguments}"),
+        );
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+    }
+    let pairs = "pairs: batches of both results have the same random numbers";
+    found(
+        &folder,
+        "a b",
+        1,
+        &[pairs, "different: slices, side of blockers at receiver"],
+    );
+    found(
+        &folder,
+        "a again",
+        0,
+        &[pairs, "the same numbers byte for byte"],
+    );
+    let seeds = "pairs: no, because the seeds are 1 and 2";
+    found(
+        &folder,
+        "a other",
+        0,
+        &[seeds, "same: nothing differs beyond noise"],
+    );
+    let none = "pairs: no, because plain has no batches (run it with --save batches)";
+    found(
+        &folder,
+        "plain b",
+        4,
+        &[none, "share photons; run both with --save batches"],
+    );
+
+    let of = |arguments: &str| -> serde_json::Value {
+        let text = diff(path, &format!("{arguments} --json")).1;
+        serde_json::from_str(&text).unwrap()
+    };
+    let (run, measured) = (of("a b"), of("ma mb"));
+    let [of_run, of_measured] = [&run, &measured].map(|diff| &diff["planes"][1]);
+    // A measurement has the same batches as a run.
+    assert_eq!(measured["pairs"], true, "{measured}");
+    for key in ["p_value", "chi2_per_dof", "difference", "noise"] {
+        assert_eq!(of_run[key], of_measured[key], "{key}");
+    }
+    let [noise, unpaired] = ["noise", "unpaired_noise"].map(|key| of_run[key].as_f64().unwrap());
+    assert!(unpaired > 10.0 * noise, "{of_run}");
+    // The predictions of both scenes differ by what the pairs measure.
+    assert!(
+        of_run["p_value_of_predicted_difference"].as_f64().unwrap() > 1e-3,
+        "{of_run}"
+    );
+    let side = of_run["parameters"].as_array().unwrap();
+    let side = side
+        .iter()
+        .find(|of| of["name"] == "side of blockers")
+        .unwrap();
+    let [a, b] = [0, 1].map(|i| side["measured"][i]["value"].as_f64().unwrap());
+    let error = side["measured"][1]["error"].as_f64().unwrap();
+    assert!((b - a - 6e-5).abs() < 4.0 * error && error < 3e-5, "{side}");
+    assert!(side["p_value_of_rest"].as_f64().unwrap() > 1e-3, "{side}");
 }
 
 /// Of the edges and sides of a mask, the one that differs is named first.

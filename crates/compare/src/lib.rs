@@ -45,6 +45,6 @@ pub use report::{
     WedgeShare,
 };
 pub use residuals::Residuals;
-pub use score::ParameterReport;
+pub use score::{ParameterReport, score};
 pub use two_samples::{Estimate, Sample, TwoSamples, pull};
 pub use verdict::{TESTS, Test, Verdict, sidak};

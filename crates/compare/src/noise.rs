@@ -26,23 +26,26 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
         return Err(TooFewBatches { have, need: 3 });
     }
     let mean = estimate::slices(measurement, plane)?.mean;
-    Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
+    Ok(Residuals::new(measurement, plane, &mean).noise_dof())
 }
 
-/// The effective number of independent real numbers. `centred` holds the difference between
-/// each batch and the mean.
-fn of_batches(centred: &Residuals) -> Option<f64> {
-    // tr Ĉ and tr Ĉ² are computed from the matrix of products, which has the same non-zero
-    // eigenvalues as Ĉ.
-    let products = centred.products(true);
-    let trace = products.diag().sum();
-    if trace <= 0.0 {
-        return None;
+impl Residuals {
+    /// The effective number of independent real numbers in the noise ([`noise_dof`]). Each residual
+    /// must be the difference between a batch and the mean.
+    #[must_use]
+    pub fn noise_dof(&self) -> Option<f64> {
+        // tr Ĉ and tr Ĉ² are computed from the matrix of products, which has the same non-zero
+        // eigenvalues as Ĉ.
+        let products = self.products(true);
+        let trace = products.diag().sum();
+        if trace <= 0.0 {
+            return None;
+        }
+        let n = self.count() as f64 - 1.0;
+        let squares: f64 = products.iter().map(|h| h * h).sum();
+        let square = n * n / ((n - 1.0) * (n + 2.0)) * (squares - trace * trace / n);
+        // A frequency has a real and an imaginary part, so it counts as at most two numbers.
+        let most = 2.0 * trace;
+        Some((trace * trace / square.max(trace * trace / most)).clamp(1.0, most.max(1.0)))
     }
-    let n = centred.count() as f64 - 1.0;
-    let squares: f64 = products.iter().map(|h| h * h).sum();
-    let square = n * n / ((n - 1.0) * (n + 2.0)) * (squares - trace * trace / n);
-    // A frequency has a real and an imaginary part, so it counts as at most two numbers.
-    let most = 2.0 * trace;
-    Some((trace * trace / square.max(trace * trace / most)).clamp(1.0, most.max(1.0)))
 }

@@ -113,7 +113,8 @@ impl Residuals {
     }
 
     /// The residuals with a part of their mean subtracted from each.
-    pub(crate) fn without(&self, part: &Array3<Complex>) -> Self {
+    #[must_use]
+    pub fn without(&self, part: &Array3<Complex>) -> Self {
         let parts = self.parts.iter().map(|residual| residual - part);
         Self {
             grid: self.grid,

@@ -40,7 +40,8 @@ const DETECTABLE: f64 = 3.858;
 /// added. The step and its error are correct to first order in δ.
 ///
 /// Returns `None` if the prediction does not depend on the parameter, or if no photon arrived.
-pub(crate) fn score(
+#[must_use]
+pub fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,
     parameter: &PredictedParameter,

@@ -1,5 +1,6 @@
 //! Compares two measurements of one plane by the data that are stored in their results.
 
+use crate::residuals::Residuals;
 use crate::tail::{chi_squared_above, student_beyond};
 use etendue_field::{Complex, SliceGrid, modulus};
 use ndarray::{Array3, Zip};
@@ -58,20 +59,12 @@ impl TwoSamples {
     #[must_use]
     pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
         let sums = FrequencySums::new(grid, a, b);
-        let norm = sums.norms[0].max(sums.norms[1]).sqrt();
-        let relative = |square: f64| {
-            if norm > 0.0 {
-                square.sqrt() / norm
-            } else {
-                0.0
-            }
-        };
         let found = Self {
             chi2_per_dof: None,
             p_value: None,
             p_shared: None,
-            difference: relative(sums.difference),
-            noise: relative(sums.noise),
+            difference: sums.relative(sums.difference),
+            noise: sums.relative(sums.noise),
         };
         if sums.count == 0 {
             // If there is no noise, any difference is significant.
@@ -97,6 +90,34 @@ impl TwoSamples {
             p_value: Some(above),
             p_shared: Some(1.0 - above),
             ..found
+        }
+    }
+
+    /// Tests whether two samples have the same true slices, from the differences A_b − B_b of their
+    /// batches.
+    ///
+    /// Batches that use the same random numbers have nearly the same noise, which cancels in their
+    /// difference. The differences are independent of each other, so their random signs give p, and
+    /// their spread gives the noise of the mean. p is `None` if all differences are zero.
+    ///
+    /// # Panics
+    /// Panics if the shapes of the arrays differ from the shape of the grid.
+    #[must_use]
+    pub fn paired(
+        grid: &SliceGrid,
+        [a, b]: [&Sample; 2],
+        differences: &Residuals,
+        seed: u64,
+    ) -> Self {
+        let sums = FrequencySums::new(grid, a, b);
+        let variance = differences.variance();
+        let noise = differences.sum(&variance, &variance, |v, _| *v);
+        Self {
+            chi2_per_dof: differences.chi2_per_dof(&variance),
+            p_value: differences.p_value(seed),
+            p_shared: None,
+            difference: sums.relative(sums.difference),
+            noise: sums.relative(noise),
         }
     }
 }
@@ -136,6 +157,16 @@ impl FrequencySums {
             },
         );
         sums
+    }
+
+    /// The root of a sum of squares, divided by the larger of ‖A‖ and ‖B‖; 0 if both are dark.
+    fn relative(&self, square: f64) -> f64 {
+        let norm = self.norms[0].max(self.norms[1]).sqrt();
+        if norm > 0.0 {
+            square.sqrt() / norm
+        } else {
+            0.0
+        }
     }
 
     fn add(&mut self, a: Complex, b: Complex, [of_a, of_b]: [f64; 2], rounding: f64) {

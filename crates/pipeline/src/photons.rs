@@ -1,12 +1,12 @@
-//! `--save photons`, `mcpl` and `tm25`: every photon that crossed a plane, in batch order.
+//! `--save`: the photons that crossed a plane, in batch order, or the batches of the measurement.
 
 mod file;
 
 use crate::measure::MeasuredScene;
 use crate::method::source;
-use etendue_field::{Crossing, PhotonSource};
+use etendue_field::{Crossing, PhotonSource, VirtualPlane};
 use etendue_store::sealed::json;
-use etendue_store::{Failure, Results};
+use etendue_store::{Failure, Results, batches, theory};
 use file::{Content, Rays};
 use serde::Serialize;
 use std::io;
@@ -22,6 +22,8 @@ pub enum Save {
     Tm25,
     /// The light field on a 4D grid, and its full radial spectrum.
     Field,
+    /// The slices of each batch, and the predictions with their derivatives.
+    Batches,
     /// The interactive page of the scene.
     Explorer,
 }
@@ -35,6 +37,7 @@ impl Save {
             Self::Mcpl => "mcpl",
             Self::Tm25 => "tm25",
             Self::Field => "field",
+            Self::Batches => "batches",
             Self::Explorer => "explorer",
         }
     }
@@ -43,11 +46,21 @@ impl Save {
 /// The index of a plane's NPY file.
 const INDEX: &str = "photons.json";
 
-/// The file names of a plane.
+/// The file names of a plane, apart from those in [`of_scene`].
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
     let name = file_of(save).map(|(name, _)| name);
     name.into_iter().chain(index).collect()
+}
+
+/// The names of the files of all planes together.
+pub fn of_scene(save: Save, planes: &[VirtualPlane]) -> Vec<String> {
+    if save != Save::Batches {
+        return Vec::new();
+    }
+    let mut names = batches::names(planes);
+    names.push(theory::FILE.to_owned());
+    names
 }
 
 /// Describes the file with the photons of a plane: returns its name, and its number of bytes per
@@ -58,7 +71,7 @@ pub fn file_of(save: Save) -> Option<(&'static str, u64)> {
         Save::Photons => Some(("photons.npy", 40)),
         Save::Mcpl => Some(("photons.mcpl", 64)),
         Save::Tm25 => Some(("photons.tm25ray", 28)),
-        Save::Field | Save::Explorer => None,
+        Save::Field | Save::Batches | Save::Explorer => None,
     }
 }
 
@@ -74,8 +87,13 @@ struct PhotonsIndex {
 
 /// Traces the same photons again, plane by plane, and streams them to disk, so that memory holds
 /// only one block of photons. A TM-25 file begins with the flux of the photons, so the photons
-/// are traced once more to compute this flux.
+/// are traced once more to compute this flux. Batches are not traced again.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
+    if save == Save::Batches {
+        batches::write(results, &case.measurement)?;
+        let predicted = theory::bytes(&case.scene.planes, &case.predictions)?;
+        return results.write(theory::FILE, &predicted);
+    }
     let Some((name, _)) = file_of(save) else {
         return Ok(());
     };
@@ -99,7 +117,7 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
                     })?;
                     Content::tm25(&rays, rows, flux)
                 }
-                Save::Photons | Save::Field | Save::Explorer => Content::Npy(rows),
+                _ => Content::Npy(rows),
             };
             file.write_all(&content.begin())?;
             offsets = trace(case, &*source, plane, &mut |crossings| {

@@ -1,7 +1,9 @@
-//! Compares two results of one scene, and describes their differences.
+//! Compares two results of one scene, or of two scenes with the same random numbers, and describes
+//! their differences.
 
 mod difference;
 mod json;
+mod pairs;
 mod planes;
 mod stored;
 mod text;

@@ -54,6 +54,9 @@ pub fn plan(
         .into_iter()
         .chain([TIMING, page::NAME])
         .chain(save.contains(&Save::Explorer).then_some(explorer::NAME));
+    let saved = save
+        .iter()
+        .map(|save| photons::of_scene(*save, &scene.planes));
     Plan {
         index: SUMMARY,
         files: scene
@@ -61,6 +64,7 @@ pub fn plan(
             .iter()
             .flat_map(of_plane)
             .chain(beside.map(str::to_owned))
+            .chain(saved.flatten())
             .collect(),
         inputs,
         force,

@@ -16,6 +16,9 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
+/// The name of the file of predictions in a result folder.
+pub const FILE: &str = "predictions.npz";
+
 /// The arrays of a plane.
 const ARRAYS: [&str; 10] = [
     "slices",

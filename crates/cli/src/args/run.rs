@@ -214,21 +214,25 @@ pub(crate) struct ConvergeArgs {
   etendue diff results/fig9b out/fig9b    two versions of the program
   etendue diff out/seed1 out/seed2        was a disagreement due to chance?
   etendue diff out/photons out/backward   two methods
+  etendue diff out/before out/after       the same seed, both with --save batches
 
 Tests two kinds of numbers at level α, over all planes together. The test of the measured slices is χ²: \
 the squared difference divided by the sum of both variances. The test of each parameter of the chain is \
-the difference divided by its standard error. The noise of both results must be independent, so their \
-seeds or methods must be different. Results with the same seed share photons: they are either identical or \
-undecided. If both results have the same scene, their predictions must be equal within the stated errors. \
-A plane whose window or frequencies differ between the results is not compared.
+the difference divided by its standard error. If both results have the same scene, their predictions must \
+be equal within the stated errors. A plane whose window or frequencies differ between the results is not \
+compared.
 
-The test makes two assumptions. Each result is a mean of many independent batches, so that its noise is \
+Results with the same seed share photons. If both have batches (run --save batches, or measure), batches \
+are subtracted in pairs, so that most of their noise cancels; this shows what changed, not whether theory \
+is right. Without batches, they are either identical or undecided.
+
+For results with other seeds or methods, the test makes two assumptions. Each result is a mean of many independent batches, so that its noise is \
 normal. Noise is correlated between frequencies in the same way in both results. If an assumption does not \
 hold, p is too large, not too small.
 
 Exit codes: 0 equal except for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {
-    /// Folder written by `etendue run` or `compare`
+    /// Folder written by `etendue run`, `compare` or `measure`
     #[arg(value_name = "A")]
     pub(crate) a: PathBuf,
 
@@ -320,6 +324,10 @@ fn saves() -> impl TypedValueParser<Value = Save> {
         named(
             Save::Field,
             "The light field on a 4D grid, in field.npy and field.json, and its full radial spectrum, in full_radial.npz. The spectrum is also predicted and compared. The photons are traced once more for each plane, or twice if memory is short",
+        ),
+        named(
+            Save::Batches,
+            "The slices of each batch, and the predictions with their derivatives, from which `etendue diff` tests two results of the same seed in pairs (docs/verdict.md): batches.npz, ledger.npz and predictions.npz",
         ),
         named(
             Save::Explorer,

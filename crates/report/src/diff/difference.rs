@@ -1,5 +1,6 @@
 //! Compares two results of one scene.
 
+use super::pairs::unpaired;
 use super::planes::{self, PlaneDiff, PlaneDifference};
 use super::stored::StoredResult;
 use etendue_compare::{Verdict, sidak};
@@ -12,6 +13,8 @@ use std::path::Path;
 pub struct Diff {
     pub(super) results: [StoredResult; 2],
     pub(super) alpha: f64,
+    /// The reason why the batches of the results are not tested in pairs; `None` if they are.
+    pub(super) unpaired: Option<String>,
     /// The fields whose values in the two scenes differ.
     pub(super) scene: Vec<FieldChange>,
     pub(super) planes: Vec<PlaneDiff>,
@@ -32,7 +35,8 @@ impl Diff {
         let [a, b] = &results;
         let scene = differences(&a.index.scene_file, &b.index.scene_file);
         let is_one_scene = scene.iter().all(is_of_run) && !has_other_inputs(a, b, &scene);
-        let planes = planes::of_results(a, b, is_one_scene)?;
+        let unpaired = unpaired(a, b);
+        let planes = planes::of_results(a, b, is_one_scene, unpaired.is_none())?;
         if planes
             .iter()
             .all(|plane| matches!(plane.found, PlaneDifference::Missing(_)))
@@ -45,6 +49,7 @@ impl Diff {
         Ok(Self {
             results,
             alpha,
+            unpaired,
             scene,
             planes,
         })

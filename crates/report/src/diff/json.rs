@@ -20,6 +20,8 @@ pub fn json(diff: &Diff) -> Value {
         "verdict": diff.verdict(),
         "alpha": diff.alpha,
         "level": level,
+        "pairs": diff.unpaired.is_none(),
+        "not_pairs": diff.unpaired,
         "results": diff.results.each_ref().map(of_result),
         "scene": fields.collect::<Vec<_>>(),
         "planes": planes.collect::<Vec<_>>(),
@@ -32,7 +34,7 @@ fn of_result(result: &StoredResult) -> Value {
         "folder": result.folder,
         "scene": index.scene,
         "photons": index.photons,
-        "batches": index.batches,
+        "batches": index.batches.len(),
         "method": index.method,
         "seed": index.seed,
         "version": index.version,
@@ -53,7 +55,12 @@ fn of_plane(plane: &PlaneDiff, level: f64) -> Value {
         found["difference"] = json!(test.difference);
         found["noise"] = json!(test.noise);
         found["slopes"] = json!(compared.slopes.map(|slope| slope.map(of_estimate)));
-        found["predictions_apart"] = json!(compared.prediction.difference);
+        let predictions = compared.prediction.as_ref().map(|of| of.difference);
+        found["predictions_apart"] = json!(predictions);
+        if let Some(pairs) = &compared.pairs {
+            found["unpaired_noise"] = json!(pairs.unpaired_noise);
+            found["p_value_of_predicted_difference"] = json!(pairs.p_predicted);
+        }
         found["parameters"] = parameters.collect();
     }
     found
@@ -61,13 +68,17 @@ fn of_plane(plane: &PlaneDiff, level: f64) -> Value {
 
 fn of_parameter(parameter: &ParameterDiff) -> Value {
     let (pull, p_value) = parameter.pull;
-    json!({
+    let mut of = json!({
         "name": parameter.name,
         "unit": parameter.unit,
         "measured": parameter.estimates.map(of_estimate),
         "sigma_apart": pull,
         "p_value": p_value,
-    })
+    });
+    if let Some(p_rest) = parameter.p_rest {
+        of["p_value_of_rest"] = json!(p_rest);
+    }
+    of
 }
 
 fn of_estimate(estimate: Estimate) -> Value {

@@ -1,5 +1,6 @@
 //! Tests one plane of two results, and describes the outcome.
 
+use super::pairs::{PairedNumbers, Pairs};
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
@@ -36,9 +37,12 @@ pub(super) enum PlaneDifference {
 #[derive(Debug)]
 pub(super) struct Compared {
     pub(super) test: TwoSamples,
+    /// Numbers of the test in pairs; `None` if the results have independent noise.
+    pub(super) pairs: Option<PairedNumbers>,
     pub(super) parameters: Vec<ParameterDiff>,
     pub(super) slopes: [Option<Estimate>; 2],
-    pub(super) prediction: PredictionDiff,
+    /// The difference of the predictions; `None` if a result has no prediction.
+    pub(super) prediction: Option<PredictionDiff>,
     /// The reason why the plane is undecided although the tests find no difference.
     unresolved: Option<String>,
     /// The reason why the outcome of the tests cannot be trusted.
@@ -52,10 +56,14 @@ pub(super) struct Compared {
 pub(super) struct ParameterDiff {
     pub(super) name: String,
     pub(super) unit: String,
+    /// The two measured values. In pairs, the value in the first scene, and this value plus the
+    /// measured change.
     pub(super) estimates: [Estimate; 2],
-    /// The difference in standard errors, (a − b)/√(e_a² + e_b²), and the p-value of this
-    /// difference.
+    /// The difference in standard errors, and the p-value of this difference: (a − b)/√(e_a² +
+    /// e_b²), or in pairs (b − a)/e.
     pub(super) pull: (f64, f64),
+    /// In pairs, the p-value of the hypothesis that nothing but this parameter has changed.
+    pub(super) p_rest: Option<f64>,
 }
 
 /// The difference of two predictions.
@@ -78,6 +86,8 @@ const CLOSED_FORM: f64 = 1e-9;
 /// standard errors. The difference is a norm over all frequencies, so its random variation is
 /// small.
 const APART: f64 = 3.0;
+/// The smallest p-value of the rest of a change with which one parameter is said to explain it.
+const EXPLAINED: f64 = 0.05;
 /// The probability that independent noise of any plane is mistaken for the noise of shared photons.
 const SHARED: f64 = 1e-4;
 
@@ -121,9 +131,16 @@ impl Compared {
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
             differing.push(SLICES.to_owned());
         }
-        let pulls = self.pulls().filter(|parameter| parameter.pull.1 < level);
-        differing.extend(pulls.map(|parameter| parameter.name.clone()));
-        differing.extend(self.prediction.is_wrong.then(|| "prediction".to_owned()));
+        let pulls = || self.pulls().filter(|parameter| parameter.pull.1 < level);
+        // A change of one parameter changes the others, each of which is measured as if it were the
+        // only one.
+        let explains =
+            |parameter: &&ParameterDiff| parameter.p_rest.is_some_and(|p| p >= EXPLAINED);
+        let is_explained = pulls().any(|parameter| explains(&parameter));
+        let named = pulls().filter(|parameter| !is_explained || explains(parameter));
+        differing.extend(named.map(|parameter| parameter.name.clone()));
+        let is_wrong = self.prediction.as_ref().is_some_and(|of| of.is_wrong);
+        differing.extend(is_wrong.then(|| "prediction".to_owned()));
         differing
     }
 
@@ -143,10 +160,19 @@ pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
     is_one_scene: bool,
+    is_paired: bool,
 ) -> Result<Vec<PlaneDiff>, Failure> {
     let common = a.index.planes.iter().map(|plane| {
         let found = match b.plane(&plane.name) {
-            Some(other) => ResultPair { a, b, is_one_scene }.found(plane, other)?,
+            Some(other) => {
+                let pair = ResultPair {
+                    a,
+                    b,
+                    is_one_scene,
+                    is_paired,
+                };
+                pair.found(plane, other)?
+            }
             None => PlaneDifference::Missing(1),
         };
         let name = plane.name.clone();
@@ -167,6 +193,7 @@ struct ResultPair<'a> {
     a: &'a StoredResult,
     b: &'a StoredResult,
     is_one_scene: bool,
+    is_paired: bool,
 }
 
 impl ResultPair<'_> {
@@ -175,18 +202,27 @@ impl ResultPair<'_> {
         if let Some(why) = self.unlike(&of_a.name, &a, &b) {
             return Ok(PlaneDifference::Unlike(why));
         }
-        let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
+        let (test, pairs, parameters) = if self.is_paired {
+            let batches = |result: &StoredResult| result.batches(&of_a.name, &a.grid);
+            let batches = [&batches(self.a)?, &batches(self.b)?];
+            let pairs = Pairs::new([&a, &b], batches, self.a.index.seed);
+            let parameters = pairs.parameters(&self.a.parameters(&of_a.name, &a)?);
+            let (test, numbers) = pairs.test();
+            (test, Some(numbers), parameters)
+        } else {
+            let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
+            (test, None, self.parameters(of_a, of_b))
+        };
         let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
         let compared = Compared {
-            parameters: self.parameters(of_a, of_b),
+            parameters,
+            pairs,
             slopes: [
-                of_a.slope.estimate(self.a.index.batches),
-                of_b.slope.estimate(self.b.index.batches),
+                of_a.slope.estimate(self.a.index.batches.len()),
+                of_b.slope.estimate(self.b.index.batches.len()),
             ],
             prediction: self.prediction([of_a, of_b], &a, &b),
-            invalid: (!is_identical)
-                .then(|| self.invalid([of_a, of_b], [&a, &b]))
-                .flatten(),
+            invalid: (!is_identical).then(|| self.invalid([&a, &b])).flatten(),
             unresolved: (!is_identical).then(|| self.unresolved(&test)).flatten(),
             is_identical,
             test,
@@ -199,7 +235,7 @@ impl ResultPair<'_> {
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
-            (&index.method, index.seed, index.photons, index.batches)
+            (&index.method, index.seed, index.photons, &index.batches)
         });
         a == b
     }
@@ -221,7 +257,7 @@ impl ResultPair<'_> {
     }
 
     fn parameters(&self, a: &StoredPlane, b: &StoredPlane) -> Vec<ParameterDiff> {
-        let batches = [self.a, self.b].map(|result| result.index.batches);
+        let batches = [self.a, self.b].map(|result| result.index.batches.len());
         let each = a.parameters.iter().filter(|p| p.is_determined());
         let each = each.filter_map(|of_a| {
             let mut others = b.parameters.iter().filter(|p| p.is_determined());
@@ -234,6 +270,7 @@ impl ResultPair<'_> {
                 name: of_a.name.clone(),
                 unit: of_a.unit.clone(),
                 pull: pull(estimates[0], estimates[1])?,
+                p_rest: None,
                 estimates,
             })
         });
@@ -245,25 +282,25 @@ impl ResultPair<'_> {
         planes: [&StoredPlane; 2],
         a: &StoredSlices,
         b: &StoredSlices,
-    ) -> PredictionDiff {
-        let difference = apart(&a.grid, &a.predicted, &b.predicted);
+    ) -> Option<PredictionDiff> {
+        let (of_a, of_b) = a.predicted.as_ref().zip(b.predicted.as_ref())?;
+        let difference = apart(&a.grid, of_a, of_b);
         let error = |plane: &StoredPlane| plane.quadrature_error.unwrap_or(0.0).powi(2);
         let error: f64 = planes.into_iter().map(error).sum();
         // At a plane of the class `reference`, the prediction is also a measurement.
         let reference = Class::Reference.to_string();
         let is_reference = planes.iter().any(|plane| plane.class == reference);
         let allowed = CLOSED_FORM.max(APART * error.sqrt());
-        PredictionDiff {
+        Some(PredictionDiff {
             difference,
             is_wrong: self.is_one_scene && !is_reference && difference > allowed,
-        }
+        })
     }
 
     /// The reason why the outcome of the tests cannot be trusted for these photons, if
     /// there is one.
-    fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
-        let results = [self.a, self.b];
-        for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
+    fn invalid(&self, slices: [&StoredSlices; 2]) -> Option<String> {
+        for (slices, result) in slices.into_iter().zip([self.a, self.b]) {
             let folder = result.folder.display();
             let Sample {
                 sigma, noise_dof, ..
@@ -273,13 +310,13 @@ impl ResultPair<'_> {
                     "{folder} has no noise_dof, because an older version of etendue wrote it; run its scene again"
                 ));
             }
-            let each = plane.in_window as f64 / result.index.batches as f64;
+            let each = slices.in_window as f64 / result.index.batches.len() as f64;
             // If one result has no light at the plane, only the photons of the other result are
             // checked.
-            if plane.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
+            if slices.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
                 return Some(format!(
                     "{folder} has {} photons in its window, too few for a test",
-                    plane.in_window
+                    slices.in_window
                 ));
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
@@ -298,12 +335,15 @@ impl ResultPair<'_> {
         let planes = a.planes.len().max(1) as f64;
         if test.p_shared.is_some_and(|p| p < SHARED / planes) {
             let seeds = if a.seed == b.seed {
-                format!("both results have seed {}, and share photons", a.seed)
+                format!(
+                    "both results have seed {}, and share photons; run both with --save batches, or one of them with another seed",
+                    a.seed
+                )
             } else {
-                "the results share photons, or their noise is overstated".to_owned()
+                "the results share photons, or their noise is overstated; run one of them with another seed".to_owned()
             };
             return Some(format!(
-                "the results differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
+                "the results differ by {apart}, but results with independent noise would differ by {noise}: {seeds}"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());

@@ -1,15 +1,16 @@
 //! Reads result folders for `diff`: every file is verified, and its content is not trusted.
 
-use etendue_compare::{Estimate, Sample};
+use etendue_compare::{Estimate, Residuals, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use etendue_scene::{Color, read_below};
 use etendue_store::npz::NpzFile;
 use etendue_store::stored::listed_bytes;
-use etendue_store::{Failure, MAX_INDEX_BYTES, SUMMARY, sealed};
-use ndarray::{Array1, Array3, Axis};
-use serde::Deserialize;
+use etendue_store::{Failure, MAX_INDEX_BYTES, MEASUREMENT, SUMMARY, sealed, theory};
+use ndarray::{Array1, Array2, Array3, Array4, Axis};
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The error of a folder without a result. The folder of `run --rgb` has a result in each
@@ -27,21 +28,23 @@ pub fn no_result(folder: &Path) -> Failure {
         )
     } else if folder.is_dir() {
         format!(
-            "{shown} holds no result, because it has no {SUMMARY}; allowed: a folder that run or compare has written"
+            "{shown} holds no result, because it has no {SUMMARY}; allowed: a folder that run, compare or measure has written"
         )
     } else {
         format!("{shown}: no such folder")
     })
 }
 
-/// A result folder of `run` or `compare`, by any version of this program.
+/// A result folder of `run` or `compare`, or a measurement, by any version of this program.
 #[derive(Debug)]
 pub(super) struct StoredResult {
     pub(super) folder: PathBuf,
     pub(super) index: ResultIndex,
+    /// The name of the index.
+    name: &'static str,
 }
 
-/// The part of a `summary.json` that `diff` needs.
+/// The part of a `summary.json` or `measurement.json` that `diff` needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct ResultIndex {
     pub(super) scene: String,
@@ -51,21 +54,38 @@ pub(super) struct ResultIndex {
     pub(super) seed: u64,
     pub(super) method: String,
     pub(super) photons: u64,
-    pub(super) batches: usize,
+    #[serde(deserialize_with = "batches")]
+    pub(super) batches: Range<usize>,
+    /// The planes. A measurement does not list its planes, so they have no numbers.
+    #[serde(default)]
     pub(super) planes: Vec<StoredPlane>,
     files: BTreeMap<String, String>,
 }
 
+/// The batches of a measurement, or the number of batches of a run.
+fn batches<'d, D: Deserializer<'d>>(from: D) -> Result<Range<usize>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Batches {
+        All(usize),
+        Some(Range<usize>),
+    }
+    Ok(match Batches::deserialize(from)? {
+        Batches::All(count) => 0..count,
+        Batches::Some(range) => range,
+    })
+}
+
 /// The numbers of a plane in `summary.json` that `diff` needs. If a number does not exist, it is
 /// null in the file.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct StoredPlane {
     pub(super) name: String,
     pub(super) class: String,
-    pub(super) in_window: u64,
+    in_window: u64,
     /// The effective number of independent real numbers in the noise; results of earlier versions
     /// do not have it.
-    #[serde(default)]
     noise_dof: Option<f64>,
     pub(super) quadrature_error: Option<f64>,
     pub(super) parameters: Vec<StoredParameter>,
@@ -73,7 +93,7 @@ pub(super) struct StoredPlane {
 }
 
 /// A measured number with its standard error.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 pub(super) struct StoredNumber {
     measured: Option<f64>,
     error: Option<f64>,
@@ -117,33 +137,57 @@ pub(super) struct StoredSlices {
     pub(super) axes: [Array1<f64>; 3],
     pub(super) grid: SliceGrid,
     pub(super) sample: Sample,
-    /// The predicted slices, [azimuth, ρ ≥ 0, ν].
-    pub(super) predicted: Array3<Complex>,
+    /// The number of photons in the window.
+    pub(super) in_window: u64,
+    /// The predicted slices, [azimuth, ρ ≥ 0, ν], if the result has a prediction.
+    pub(super) predicted: Option<Array3<Complex>>,
+    /// Whether the prediction has no error of its own.
+    pub(super) is_closed_form: bool,
+}
+
+/// The batches of a plane, as stored in a result folder.
+#[derive(Debug)]
+pub(super) struct StoredBatches {
+    /// The slices of each batch, [azimuth, ρ ≥ 0, ν].
+    pub(super) slices: Vec<Array3<Complex>>,
+    in_window: u64,
 }
 
 impl StoredResult {
     pub(super) fn read(folder: &Path) -> Result<Self, Failure> {
-        let path = folder.join(SUMMARY);
+        let indices = [SUMMARY, MEASUREMENT];
+        let mut indices = indices.into_iter().map(|name| (name, folder.join(name)));
+        let Some((name, path)) = indices.find(|(_, path)| path.is_file()) else {
+            return Err(no_result(folder));
+        };
         let shown = path.display();
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
-        if !path.is_file() {
-            return Err(no_result(folder));
-        }
-        let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
+        let bytes = read_below(folder, name, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         sealed::check_format(&bytes).map_err(fault)?;
-        let index: ResultIndex = serde_json::from_slice(&bytes)
+        let mut index: ResultIndex = serde_json::from_slice(&bytes)
             .map_err(|e| fault(format!("the file is not a summary of a run: {e}")))?;
         sealed::check_seal(&bytes).map_err(fault)?;
-        if index.batches < 3 {
+        if index.batches.len() < 3 {
             return Err(fault(format!(
                 "batches: {}; must be at least 3",
-                index.batches
+                index.batches.len()
             )));
+        }
+        if name == MEASUREMENT {
+            let planes = index.scene_file["planes"].as_array();
+            let planes = planes.into_iter().flatten();
+            let names = planes.filter_map(|plane| plane["name"].as_str());
+            let planes = names.map(|name| StoredPlane {
+                name: name.to_owned(),
+                ..StoredPlane::default()
+            });
+            index.planes = planes.collect();
         }
         Ok(Self {
             folder: folder.to_owned(),
             index,
+            name,
         })
     }
 
@@ -153,21 +197,60 @@ impl StoredResult {
 
     /// The hash of the file with a plane's arrays.
     pub(super) fn hash(&self, plane: &str) -> Option<&String> {
-        self.index.files.get(&slices_of(plane))
+        self.index.files.get(&self.slices_of(plane))
+    }
+
+    fn slices_of(&self, plane: &str) -> String {
+        match self.name {
+            MEASUREMENT => batches_of(plane),
+            _ => format!("{plane}/slices.npz"),
+        }
+    }
+
+    /// Checks whether the folder has the batches of its planes.
+    pub(super) fn has_batches(&self) -> bool {
+        let mut planes = self.index.planes.iter();
+        planes.all(|plane| self.index.files.contains_key(&batches_of(&plane.name)))
+    }
+
+    /// The batches of a plane, [batch, azimuth, ρ ≥ 0, ν].
+    pub(super) fn batches(&self, plane: &str, grid: &SliceGrid) -> Result<StoredBatches, Failure> {
+        let mut file = self.open(&batches_of(plane))?;
+        let [azimuths, rho, nu] = grid.half_shape();
+        let count = self.index.batches.len();
+        check_length(&file, "slices", &[count, azimuths, rho, nu])?;
+        let tally: Array2<u64> = file.array("tally", [count, 3])?;
+        let slices: Array4<Complex> = file.array("slices", [count, azimuths, rho, nu])?;
+        Ok(StoredBatches {
+            slices: slices.outer_iter().map(|one| one.to_owned()).collect(),
+            in_window: tally
+                .column(1)
+                .iter()
+                .fold(0, |sum, n| sum.saturating_add(*n)),
+        })
+    }
+
+    /// The file of predictions that a run saves beside its batches.
+    pub(super) fn predictions(&self) -> Result<Option<NpzFile>, Failure> {
+        let is_listed = self.index.files.contains_key(theory::FILE);
+        is_listed.then(|| self.open(theory::FILE)).transpose()
+    }
+
+    fn open(&self, name: &str) -> Result<NpzFile, Failure> {
+        let bytes = listed_bytes(&self.folder, self.name, &self.index.files, name)?;
+        NpzFile::new(self.folder.join(name), bytes)
     }
 
     /// The slices of a plane from the plane's arrays.
     pub(super) fn slices(&self, plane: &StoredPlane) -> Result<StoredSlices, Failure> {
-        let name = slices_of(&plane.name);
-        let bytes = listed_bytes(&self.folder, SUMMARY, &self.index.files, &name)?;
-        let mut file = NpzFile::new(self.folder.join(&name), bytes)?;
+        let mut file = self.open(&self.slices_of(&plane.name))?;
         let [azimuth, rho, nu] = ["azimuth", "rho", "nu"].map(|name| file.axis(name));
         let axes = [azimuth?, rho?, nu?];
-        let lengths = [0, 1, 2].map(|i| axes[i].len());
-        let numbers = lengths.iter().try_fold(1_usize, |n, l| n.checked_mul(*l));
-        if !numbers.is_some_and(|n| n > 0 && file.may_hold(n)) {
-            return Err(file.fault("measured", "the file is too short for its axes"));
+        if self.name == MEASUREMENT {
+            return self.slices_of_batches(&plane.name, file, axes);
         }
+        let lengths = [0, 1, 2].map(|i| axes[i].len());
+        check_length(&file, "measured", &lengths)?;
         let grid = SliceGrid {
             azimuths: lengths[0],
             rho: axis(&mut file, "rho", &axes[1])?,
@@ -191,9 +274,43 @@ impl StoredResult {
                 mean: half(&measured, &grid),
                 sigma: half(&sigma, &grid),
                 noise_dof: plane.noise_dof.filter(|dof| *dof > 0.0),
-                batches: self.index.batches,
+                batches: self.index.batches.len(),
             },
-            predicted: half(&predicted, &grid),
+            in_window: plane.in_window,
+            predicted: Some(half(&predicted, &grid)),
+            is_closed_form: plane.quadrature_error.is_none() && plane.class == "exact",
+        })
+    }
+
+    /// The slices of a plane of a measurement, whose axes are those of its batches.
+    fn slices_of_batches(
+        &self,
+        plane: &str,
+        mut file: NpzFile,
+        [azimuth, half, nu]: [Array1<f64>; 3],
+    ) -> Result<StoredSlices, Failure> {
+        let below = half.iter().skip(1).rev().map(|rho| -rho);
+        let rho: Array1<f64> = below.chain(half.iter().copied()).collect();
+        let grid = SliceGrid {
+            azimuths: azimuth.len(),
+            rho: axis(&mut file, "rho", &rho)?,
+            nu: axis(&mut file, "nu", &nu)?,
+        };
+        let StoredBatches { slices, in_window } = self.batches(plane, &grid)?;
+        let residuals = Residuals::of(grid, slices);
+        let mean = residuals.mean();
+        Ok(StoredSlices {
+            axes: [azimuth, rho, nu],
+            grid,
+            sample: Sample {
+                sigma: residuals.variance().mapv(f64::sqrt),
+                noise_dof: residuals.without(&mean).noise_dof(),
+                batches: self.index.batches.len(),
+                mean,
+            },
+            in_window,
+            predicted: None,
+            is_closed_form: false,
         })
     }
 }
@@ -204,8 +321,18 @@ fn half<A: Clone>(array: &Array3<A>, grid: &SliceGrid) -> Array3<A> {
     half.to_owned()
 }
 
-fn slices_of(plane: &str) -> String {
-    format!("{plane}/slices.npz")
+fn batches_of(plane: &str) -> String {
+    format!("{plane}/batches.npz")
+}
+
+/// Fails if a file is too short for an array with axes of these lengths.
+fn check_length(file: &NpzFile, array: &str, lengths: &[usize]) -> Result<(), Failure> {
+    let numbers = lengths.iter().try_fold(1_usize, |n, l| n.checked_mul(*l));
+    if numbers.is_some_and(|n| n > 0 && file.may_hold(n)) {
+        Ok(())
+    } else {
+        Err(file.fault(array, "the file is too short for its axes"))
+    }
 }
 
 /// Reads an axis with an odd number of frequencies and zero in the middle.

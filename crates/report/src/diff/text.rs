@@ -16,6 +16,12 @@ const MOST_FIELDS: usize = 8;
 pub fn text(diff: &Diff) -> String {
     let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
     lines.extend(scene(diff));
+    lines.push(match &diff.unpaired {
+        Some(why) => format!("pairs: no, because {why}"),
+        None => "pairs: batches of both results have the same random numbers, so most of their noise cancels. \
+            They show what changed, not whether theory is right"
+            .to_owned(),
+    });
     lines.push(String::new());
     lines.extend(aligned(planes(diff)));
     let parameters = parameters(diff);
@@ -41,7 +47,8 @@ fn header(letter: char, result: &StoredResult) -> String {
     format!(
         "{letter}: {}: {scene}, {} photons in {batches} batches, method {method}, seed {seed}, version {version}",
         result.folder.display(),
-        grouped(*photons)
+        grouped(*photons),
+        batches = batches.len()
     )
 }
 
@@ -71,24 +78,18 @@ fn scene(diff: &Diff) -> Vec<String> {
 }
 
 fn planes(diff: &Diff) -> Vec<Vec<String>> {
-    let header = [
-        "plane",
-        "χ²/dof",
-        "p",
-        "difference",
-        "noise alone",
-        "shear slope A [m]",
-        "B",
-        "σ apart",
-        "predictions",
-        "verdict",
-    ];
+    let special = match diff.unpaired {
+        None => ["noise without pairs", "predictions", "p of predictions"].as_slice(),
+        Some(_) => &["shear slope A [m]", "B", "σ apart", "predictions"],
+    };
+    let common = ["plane", "χ²/dof", "p", "difference", "noise alone"];
+    let header = [&common, special, &["verdict"]].concat();
     let level = diff.level();
     let rows = diff.planes.iter().map(|plane| {
         let mut row = vec![plane.name.clone()];
         row.extend(match plane.compared() {
             Some(compared) => cells(compared),
-            None => vec!["–".to_owned(); 8],
+            None => vec!["–".to_owned(); header.len() - 2],
         });
         row.push(word(plane.verdict(level)).to_owned());
         row
@@ -98,43 +99,71 @@ fn planes(diff: &Diff) -> Vec<Vec<String>> {
 
 fn cells(plane: &Compared) -> Vec<String> {
     let test = &plane.test;
-    let slope = |slope: Option<Estimate>| slope.map_or("–".to_owned(), shown);
-    let [a, b] = plane.slopes;
-    let pull = a.zip(b).and_then(|(a, b)| etendue_compare::pull(a, b));
-    let predictions = if plane.prediction.difference <= ROUNDING {
-        "the same".to_owned()
-    } else {
-        format!("{} apart", percent_of(plane.prediction.difference, 3))
-    };
-    vec![
+    let mut cells = vec![
         number(test.chi2_per_dof, 3),
         number(test.p_value, 5),
         percent(Some(test.difference)),
         percent(Some(test.noise)),
-        slope(a),
-        slope(b),
-        number(pull.map(|(pull, _)| pull), 2),
-        predictions,
-    ]
+    ];
+    let predictions = match &plane.prediction {
+        None => "–".to_owned(),
+        Some(of) if of.difference <= ROUNDING => "the same".to_owned(),
+        Some(of) => format!("{} apart", percent_of(of.difference, 3)),
+    };
+    if let Some(pairs) = &plane.pairs {
+        cells.push(percent(Some(pairs.unpaired_noise)));
+        cells.push(predictions);
+        cells.push(number(pairs.p_predicted, 5));
+        return cells;
+    }
+    let slope = |slope: Option<Estimate>| slope.map_or("–".to_owned(), shown);
+    let [a, b] = plane.slopes;
+    let pull = a.zip(b).and_then(|(a, b)| etendue_compare::pull(a, b));
+    cells.extend([slope(a), slope(b), number(pull.map(|(pull, _)| pull), 2)]);
+    cells.push(predictions);
+    cells
 }
 
 fn shown(estimate: Estimate) -> String {
-    uncertain(estimate.value, estimate.error)
+    if estimate.error > 0.0 {
+        uncertain(estimate.value, estimate.error)
+    } else {
+        tidy(estimate.value)
+    }
 }
 
 fn parameters(diff: &Diff) -> Vec<Vec<String>> {
-    let header = ["plane", "parameter", "A", "B", "σ apart", "p"];
+    let header = match diff.unpaired {
+        None => [
+            "plane",
+            "parameter",
+            "A",
+            "B − A",
+            "σ apart",
+            "p",
+            "p of the rest",
+        ]
+        .as_slice(),
+        Some(_) => &["plane", "parameter", "A", "B", "σ apart", "p"],
+    };
     let rows = diff.planes.iter().flat_map(|plane| {
         let found = plane.compared().map(|compared| &compared.parameters);
         found.into_iter().flatten().map(|parameter| {
-            let [a, b] = parameter.estimates.map(shown);
+            let [a, mut b] = parameter.estimates;
+            if diff.unpaired.is_none() {
+                b.value -= a.value;
+            }
+            let [a, b] = [a, b].map(shown);
             let (pull, p) = parameter.pull;
+            let parameter_rest = parameter.p_rest;
             let parameter = with_unit(&parameter.name, &parameter.unit);
             let [pull, p] = [number(Some(pull), 2), number(Some(p), 5)];
-            vec![plane.name.clone(), parameter, a, b, pull, p]
+            let mut row = vec![plane.name.clone(), parameter, a, b, pull, p];
+            row.extend(diff.unpaired.is_none().then(|| number(parameter_rest, 5)));
+            row
         })
     });
-    below_header(&header, rows)
+    below_header(header, rows)
 }
 
 fn word(verdict: Verdict) -> &'static str {
