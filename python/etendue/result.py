@@ -78,10 +78,13 @@ class LightField:
 class Plane:
     """A virtual plane: measurement, prediction and verdict. NumPy takes over the memory of the arrays without a copy."""
 
-    def __init__(self, outcome: _etendue.Outcome, number: int, report: Mapping[str, Any], batches: int) -> None:
+    def __init__(self, outcome: _etendue.Outcome, number: int, summary: Mapping[str, Any]) -> None:
         self._outcome = outcome
         self._number = number
-        self._batches = batches
+        self._batches: int = summary["batches"]
+        run = summary["scene_file"]["run"]
+        self._numbers = (*(summary[name] for name in ("seed", "method", "photons", "batches")), run["sampling"], run["emission"])
+        report: Mapping[str, Any] = summary["planes"][number]
         self.report = report
         """All numbers of the plane, as in `summary.json`."""
 
@@ -123,8 +126,9 @@ class Plane:
     @property
     def sample(self) -> Sample:
         """The measured slices with their noise, for `difference`."""
-        slices = self.slices
-        return Sample(slices.measured, slices.sigma_measured, self.report["noise_dof"], self._batches)
+        slices, number = self.slices, self._number
+        noise = slices.sigma_measured, self.report["noise_dof"], self._batches
+        return Sample(slices.measured, *noise, self._numbers, lambda: self._outcome.batches(number))
 
     def to_xarray(self) -> xarray.Dataset:
         """Slices and radial spectrum with their axes and units (needs xarray)."""
@@ -169,8 +173,8 @@ class Result(Mapping[str, Plane]):
         self._outcome = outcome
         self.summary: Mapping[str, Any] = json.loads(outcome.summary())
         """`summary.json`, without the hashes of files."""
-        reports = enumerate(self.summary["planes"])
-        self._planes = {report["name"]: Plane(outcome, i, report, self.summary["batches"]) for i, report in reports}
+        planes = (Plane(outcome, i, self.summary) for i in range(len(self.summary["planes"])))
+        self._planes = {plane.name: plane for plane in planes}
 
     @property
     def verdict(self) -> Verdict:

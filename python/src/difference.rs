@@ -1,9 +1,9 @@
 //! The test of two spectra of the same light.
 
-use etendue_compare::{Sample, TwoSamples};
+use etendue_compare::{Residuals, Sample, TwoSamples};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use ndarray::{Array3, ArrayView3, Axis};
-use numpy::PyReadonlyArray3;
+use numpy::{PyReadonlyArray3, PyReadonlyArray4};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -16,12 +16,18 @@ type Measured<'py> = (
     usize,
 );
 
-/// Tests whether two spectra differ by more than noise. Returns p, χ²/dof, the relative difference
-/// and the relative difference from noise alone.
+/// Tests whether two spectra differ by more than noise. `pairs` are the batches of both, [batch,
+/// azimuth, ρ ≥ 0, ν], if they have the same random numbers, and the seed of random signs. Returns
+/// p, χ²/dof, the relative difference and the relative difference from noise alone.
 #[pyfunction]
 pub(crate) fn two_samples(
     a: Measured<'_>,
     b: Measured<'_>,
+    pairs: Option<(
+        PyReadonlyArray4<'_, Complex>,
+        PyReadonlyArray4<'_, Complex>,
+        u64,
+    )>,
 ) -> PyResult<(Option<f64>, Option<f64>, f64, f64)> {
     let shape = a.0.as_array().dim();
     let (azimuths, rho, nu) = shape;
@@ -45,7 +51,21 @@ pub(crate) fn two_samples(
         noise_dof,
         batches,
     });
-    let found = TwoSamples::new(&grid, &a, &b);
+    let found = match pairs {
+        None => TwoSamples::new(&grid, &a, &b),
+        Some((of_a, of_b, seed)) => {
+            let [of_a, of_b] = [of_a.as_array(), of_b.as_array()];
+            let half = [b.batches, azimuths, grid.rho.half + 1, nu];
+            if [of_a.shape(), of_b.shape()] != [half; 2] || b.batches < 4 {
+                let what = format!("batches must have the shape {half:?}");
+                return Err(PyValueError::new_err(what));
+            }
+            let batches = of_a.outer_iter().zip(of_b.outer_iter());
+            let differences = batches.map(|(a, b)| &b - &a).collect();
+            let differences = Residuals::of(grid, differences);
+            TwoSamples::paired(&grid, [&a, &b], &differences, seed)
+        }
+    };
     Ok((
         found.p_value,
         found.chi2_per_dof,

@@ -3,11 +3,12 @@
 use crate::arrays::Arrays;
 use crate::raised::raised;
 use etendue_compare::PlaneComparison;
-use etendue_field::ProjectionGrid;
+use etendue_field::{Complex, ProjectionGrid};
 use etendue_store::ArgumentStyle;
 use etendue_store::arrays::SliceArrays;
-use ndarray::Array1;
-use pyo3::exceptions::PyIndexError;
+use ndarray::{Array1, Axis};
+use numpy::{IntoPyArray, PyArray4};
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -50,6 +51,20 @@ impl Outcome {
 
     fn measurement(&self) -> Measurement {
         Measurement(self.0.case.measurement.clone())
+    }
+
+    /// The slices of each batch at a plane, [batch, azimuth, ρ ≥ 0, ν].
+    fn batches<'py>(
+        &self,
+        py: Python<'py>,
+        plane: usize,
+    ) -> PyResult<Bound<'py, PyArray4<Complex>>> {
+        self.plane(plane)?;
+        let batches = self.0.case.measurement.at_plane(plane);
+        let slices: Vec<_> = batches.map(|batch| batch.slices.half.view()).collect();
+        let stacked = ndarray::stack(Axis(0), &slices);
+        let stacked = stacked.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(stacked.into_pyarray(py))
     }
 
     fn prediction(&self) -> Prediction {

@@ -256,6 +256,20 @@ def test_a_result_of_another_scene_stays(result, tmp_path):
     assert os.listdir(tmp_path) == ["a"]
 
 
+def test_pairs_show_changes_below_the_noise(result):
+    """Blockers whose sides are 0.1 % wider, with the seed of the other scene and with another one."""
+    wide = {"blockers.0.pitch": 0.1, "blockers.0.fill": 0.6006}
+    summary = result.summary
+    for seed, paired in ((summary["seed"], True), (summary["seed"] + 1, False)):
+        other = etendue.run(etendue.Scene(FIG9B, photons=summary["photons"], seed=seed, set=wide))
+        found = etendue.difference(result["receiver"], other["receiver"])
+        assert found.paired == paired
+        # One in a thousand, since the seeds are fixed.
+        assert (found.p_value > 1e-3) != paired
+    same = etendue.difference(result["receiver"], result["receiver"])
+    assert same.difference == same.noise == 0 and same.p_value is None
+
+
 def test_two_measurements_differ_by_noise_alone(result):
     """Photons of another seed agree, and rays of the user's too; light that is a fifth too bright does not."""
     scene = etendue.Scene(FIG9B, photons=2**18, seed=2, set={"blockers.0.pitch": 0.1})

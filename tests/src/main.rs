@@ -24,6 +24,7 @@ mod kills;
 mod nets;
 mod noise;
 mod orders;
+mod pairs;
 mod predicted;
 mod progress;
 mod pulls;
@@ -174,6 +175,9 @@ enum ValidationCommand {
     /// Measure pulls of parameters and slopes over random scenes, and the cost of predictions; exit
     /// code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
+    /// Measure scenes by their difference from another scene with the same photons; exit code 1 if
+    /// stated errors are wrong.
+    Pairs(pairs::PairOptions),
     /// Compare the slice transform with plain sums over random scenes; exit code 1 if its error is
     /// larger than stated.
     Transform(transform::TransformOptions),
@@ -211,6 +215,7 @@ fn main() -> ExitCode {
         ValidationCommand::Worlds(options) => one(worlds::worlds(options)),
         ValidationCommand::Assumptions(options) => one(assumptions::assumptions(options)),
         ValidationCommand::Pulls(options) => printed(pulls::pulls(options)),
+        ValidationCommand::Pairs(options) => printed(Ok(pairs::pairs(options))),
         ValidationCommand::Transform(options) => one(transform::transform(options)),
         ValidationCommand::Plain(options) => one(second::plain(options)),
         ValidationCommand::Second => one(second::second()),

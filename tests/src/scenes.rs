@@ -110,6 +110,17 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
     }
 }
 
+/// Measures two scenes with the same photons.
+pub(crate) fn paired(scenes: [&Scene; 2]) -> [Measurement; 2] {
+    if scenes[0].other_lights.is_empty() {
+        let [a, b] = Tracer::pair(scenes);
+        [measured(scenes[0], &a), measured(scenes[1], &b)]
+    } else {
+        let [a, b] = AllLights::pair(scenes);
+        [measured(scenes[0], &a), measured(scenes[1], &b)]
+    }
+}
+
 /// A tracer that modifies crossings before they are recorded.
 struct Tampered<F> {
     tracer: Tracer,

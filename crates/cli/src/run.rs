@@ -7,6 +7,7 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::{report, warnings};
 use etendue_compare::Verdict;
+use etendue_pipeline::load::SceneSource;
 use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Checkpointing, Leader, Run, Tracing, field};
 use etendue_report::page::NAME;
@@ -15,7 +16,7 @@ use etendue_report::{OutputOptions, Stopwatch, announcement, check_explorer, pla
 use etendue_scene::{Color, Scene};
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{ArgumentStyle, Failure, Results, SUMMARY, below};
+use etendue_store::{ArgumentStyle, Failure, Method, Results, SUMMARY, below};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -85,12 +86,19 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         }
         announce(args, &run.scene);
         let mut watch = Stopwatch::start();
-        let Some(measurement) = run.trace(tracing(args, workers, &folder), &terminal)? else {
-            return finished(args, &run.scene, &folder).ok_or_else(|| gone(&folder));
+        let (measurement, predictions) = if let Some(other) = twin(args, &run)? {
+            let found = run.measured_against(&other, &terminal)?;
+            watch.lap("trace");
+            found
+        } else {
+            let Some(measurement) = run.trace(tracing(args, workers, &folder), &terminal)? else {
+                return finished(args, &run.scene, &folder).ok_or_else(|| gone(&folder));
+            };
+            watch.lap("trace");
+            let predictions = run.predictions(workers, &terminal)?;
+            watch.lap("predict");
+            (measurement, predictions)
         };
-        watch.lap("trace");
-        let predictions = run.predictions(workers, &terminal)?;
-        watch.lap("predict");
         let mut results = match results {
             Some(results) => results,
             None => {
@@ -117,6 +125,21 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         CheckpointStore::of(&folder, &case.scene, case.method).remove();
         Ok(code)
     })
+}
+
+/// The scene of `--against`, with the settings of the run.
+fn twin(args: &RunArgs, run: &Run) -> Result<Option<Run>, Failure> {
+    let Some(path) = &args.against else {
+        return Ok(None);
+    };
+    if run.method != Method::Photons {
+        return Err(Failure::bad_input(
+            "--against traces photons; allowed: --method photons",
+        ));
+    }
+    let settings = &run.scene.file.run;
+    let source = SceneSource::file(path, &[]);
+    Run::read(&source, run.method, |run| *run = settings.clone()).map(Some)
 }
 
 /// Prints warnings, and fails if the run is too large or its folder has the result of another

@@ -188,6 +188,60 @@ fn pairs_show_changes_below_the_noise() {
     assert!(side["p_value_of_rest"].as_f64().unwrap() > 1e-3, "{side}");
 }
 
+/// A scene is measured by its difference from another one, with less noise than alone. A prediction
+/// of the other scene that is wrong is not noticed.
+#[test]
+fn a_scene_is_measured_against_another() {
+    let folder = runs(&["--photons 2^16 --seed 1 --out alone"]);
+    let path = folder.path();
+    let wide = SCENE.replace("0.5999999999999999", "0.603");
+    assert_ne!(wide, SCENE);
+    fs::write(path.join("wide.ron"), &wide).unwrap();
+    let against = |arguments: &str| {
+        let output = loud(
+            path,
+            &format!("run wide.ron --photons 2^16 --seed 1 {arguments}"),
+        );
+        let message = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), message)
+    };
+    let (code, message) = against("--against small.ron --out twin --threads 1");
+    assert_eq!(code, Some(0), "{message}");
+    let (code, message) = against("--against small.ron --out again --threads 2");
+    assert_eq!(code, Some(0), "{message}");
+    let summary = |name: &str| fs::read(path.join(name).join("summary.json")).unwrap();
+    assert_eq!(summary("twin"), summary("again"));
+    let of = |name: &str| json(&path.join(name).join("summary.json"));
+    let (alone, twin) = (of("alone"), of("twin"));
+    assert_eq!(twin["method"], "difference");
+    let noise = |of: &serde_json::Value| of["planes"][1]["noise_limit"].as_f64().unwrap();
+    assert!(noise(&alone) > 4.0 * noise(&twin), "{alone} {twin}");
+    // Light that is the same in both scenes has the prediction of the first, without noise.
+    assert_eq!(twin["planes"][0]["relative_error"], 0.0);
+
+    // A third scene, whose prediction differs from that of the first by what photons measure.
+    let (code, message) = against("--set blockers.0.fill=0.609 --against wide.ron --out third");
+    assert_eq!(code, Some(0), "{message}");
+    for (other, part) in [
+        (
+            SCENE.replace("receiver", "elsewhere"),
+            "its planes are light, elsewhere",
+        ),
+        (
+            SCENE.replace("x: Hann(0.5)", "x: Hann(0.4)"),
+            "plane light has another window",
+        ),
+    ] {
+        fs::write(path.join("other.ron"), other).unwrap();
+        let (code, message) = against("--against other.ron --out refused");
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains(part), "{message}");
+    }
+    let (code, message) = against("--method backward --against small.ron --out refused");
+    assert_eq!(code, Some(2), "{message}");
+    assert!(!path.join("refused").exists());
+}
+
 /// Of the edges and sides of a mask, the one that differs is named first.
 #[test]
 fn the_edge_that_moved_is_named() {

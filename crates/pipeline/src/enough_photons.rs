@@ -185,7 +185,7 @@ fn reached_by_light(
 ) -> Result<Vec<u64>, Failure> {
     let scene = &case.scene;
     Ok(match method {
-        Method::Photons => of_each(&AllLights::photons(scene), scene, plane),
+        Method::Photons | Method::Difference => of_each(&AllLights::photons(scene), scene, plane),
         Method::Even => of_each(&AllLights::with_uniform_emission(scene), scene, plane),
         Method::Given => Vec::new(),
         Method::Backward => {

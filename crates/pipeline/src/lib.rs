@@ -30,6 +30,7 @@ mod reporter;
 mod run;
 mod summary;
 mod target;
+mod twin;
 mod workers;
 
 pub use checkpoint::Checkpointing;

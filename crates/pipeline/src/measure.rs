@@ -3,6 +3,7 @@
 use crate::method::source;
 use crate::reporter::{Reporter, Work};
 use etendue_compare::Prediction;
+use etendue_field::PhotonSource;
 use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -31,12 +32,24 @@ pub fn measured(
     batches: Range<u32>,
     reporter: &dyn Reporter,
 ) -> Result<Measurement, Failure> {
-    let source = source(scene, method)?;
+    Ok(measured_by(
+        &*source(scene, method)?,
+        scene,
+        batches,
+        reporter,
+    ))
+}
+
+/// Measures some batches of the light of `source` at all planes of a scene.
+pub(crate) fn measured_by(
+    source: &dyn PhotonSource,
+    scene: &Scene,
+    batches: Range<u32>,
+    reporter: &dyn Reporter,
+) -> Measurement {
     let photons = batches.clone().map(|batch| source.emitted(batch)).sum();
     let bar = reporter.begin(Work::Photons(photons));
-    let measurement = etendue_spectrum::measure(&*source, &scene.planes, batches, &|photons| {
+    etendue_spectrum::measure(source, &scene.planes, batches, &|photons| {
         bar.advance(photons);
-    });
-    drop(bar);
-    Ok(measurement)
+    })
 }

@@ -10,7 +10,7 @@ use etendue_trace::{AllLights, Backward, Tracer, finds};
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
     if !scene.other_lights.is_empty() {
         return Ok(match method {
-            Method::Photons => Box::new(AllLights::photons(scene)),
+            Method::Photons | Method::Difference => Box::new(AllLights::photons(scene)),
             Method::Backward => Box::new(AllLights::backward(scene).map_err(Failure::bad_input)?),
             Method::Even => Box::new(AllLights::with_uniform_emission(scene)),
             Method::Given => {
@@ -20,7 +20,7 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
         });
     }
     Ok(match method {
-        Method::Photons => Box::new(Tracer::new(scene)),
+        Method::Photons | Method::Difference => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
         Method::Even => Box::new(Tracer::with_uniform_emission(scene)),
         Method::Given => Box::new(FileRays::new(scene)?),
@@ -31,7 +31,19 @@ pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Fa
 pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
         Method::Backward | Method::Given => source(scene, method).map(drop),
-        Method::Photons | Method::Even => Ok(()),
+        Method::Photons | Method::Even | Method::Difference => Ok(()),
+    }
+}
+
+/// The sources of photons of two scenes that are traced in pairs.
+pub fn pair(scenes: [&Scene; 2]) -> [Box<dyn PhotonSource>; 2] {
+    fn boxed<S: PhotonSource + 'static>(sources: [S; 2]) -> [Box<dyn PhotonSource>; 2] {
+        sources.map(|source| Box::new(source) as Box<dyn PhotonSource>)
+    }
+    match scenes.map(|scene| scene.other_lights.len()) {
+        [0, 0] => boxed(Tracer::pair(scenes)),
+        [a, b] if a == b => boxed(AllLights::pair(scenes)),
+        _ => boxed(scenes.map(AllLights::photons)),
     }
 }
 
@@ -39,8 +51,8 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
 /// method is as independent of `method` as the scene allows. Nothing tests rays that were given.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
-        Method::Photons if finds_all(scene, plane) => Method::Backward,
-        Method::Photons => Method::Even,
+        Method::Photons | Method::Difference if finds_all(scene, plane) => Method::Backward,
+        Method::Photons | Method::Difference => Method::Even,
         Method::Backward | Method::Even => Method::Photons,
         Method::Given => Method::Given,
     }
@@ -58,7 +70,7 @@ fn finds_all(scene: &Scene, plane: &VirtualPlane) -> bool {
 /// `method` serve as the prediction.
 pub fn step(method: Method) -> String {
     let shared = match method {
-        Method::Photons | Method::Backward | Method::Given => "",
+        Method::Photons | Method::Backward | Method::Difference | Method::Given => "",
         // At this plane, backward rays would not find the light.
         Method::Even => {
             "; after emission, the same code traces these rays and the photons, so the comparison does not detect errors in this code"

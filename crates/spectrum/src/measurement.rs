@@ -2,7 +2,7 @@
 
 use crate::batch::{Batch, PlaneBatch};
 use crate::variation::WindowedMean;
-use etendue_field::{Ledger, PlaneTally, Slices, VirtualPlane};
+use etendue_field::{Ledger, PlaneTally, Projection, Slices, VirtualPlane};
 use std::collections::BTreeMap;
 
 /// A complete or partial measurement: some batches of photons at some virtual planes.
@@ -155,6 +155,29 @@ impl Measurement {
             self.insert(batch)?;
         }
         Ok(self)
+    }
+
+    /// The measurement of a scene by its difference from another one: the slices and the projection of
+    /// each batch become B_b − A_b + F. `self` holds B_b, `other` holds A_b, and `known` holds the
+    /// expected slices and projection F of A at each plane. If equal batches use the same random
+    /// numbers, most of their noise cancels. Tallies, ledger and moments remain those of B.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the two measurements or `known` have different numbers or frequencies of planes.
+    #[must_use]
+    pub fn difference_from(mut self, other: &Self, known: &[(&Slices, &Projection)]) -> Self {
+        for (of_b, of_a) in self.batches.values_mut().zip(other.batches()) {
+            let planes = of_b.planes.iter_mut().zip(&of_a.planes);
+            for ((b, a), (slices, projection)) in planes.zip(known) {
+                // In this order, equal batches give exactly F.
+                b.slices.half -= &a.slices.half;
+                b.slices.half += &slices.half;
+                b.projection.values -= &a.projection.values;
+                b.projection.values += &projection.values;
+            }
+        }
+        self
     }
 
     fn names(&self) -> Vec<String> {

@@ -12,6 +12,8 @@ pub enum Method {
     Backward,
     /// Photons that are not aimed at windows. They are used to test other methods.
     Even,
+    /// The prediction of another scene, plus photons of both scenes in pairs.
+    Difference,
     /// Rays that the user gives, each once. Étendue does not trace them, so no other tracer can
     /// judge them.
     Given,
@@ -24,7 +26,7 @@ impl Method {
     pub fn keeps_ledger(self) -> bool {
         match self {
             Self::Photons | Self::Even => true,
-            Self::Backward | Self::Given => false,
+            Self::Backward | Self::Difference | Self::Given => false,
         }
     }
 
@@ -35,6 +37,7 @@ impl Method {
             Self::Photons => "photons",
             Self::Backward => "backward",
             Self::Even => "even",
+            Self::Difference => "difference",
             Self::Given => "given",
         }
     }
@@ -46,6 +49,7 @@ impl Method {
             Self::Photons => "photons",
             Self::Backward => "backward rays",
             Self::Even => "photons sent evenly",
+            Self::Difference => "photons in pairs with photons of another scene",
             Self::Given => "the given rays",
         }
     }

@@ -92,6 +92,30 @@ impl Emitter {
         }
     }
 
+    /// Builds the emitters with which two scenes are traced in pairs. If both aim their emission, they
+    /// aim at the windows of both scenes, so that equal numbers give equal photons, and no light of
+    /// either scene is left out.
+    pub(crate) fn pair(scenes: [&Scene; 2]) -> [Self; 2] {
+        let mut emitters = scenes.map(Self::new);
+        let [a, b] = &mut emitters;
+        if let (
+            EmissionStrategy::Aimed { proposals, equal },
+            EmissionStrategy::Aimed {
+                proposals: others,
+                equal: other_shares,
+            },
+        ) = (&mut a.strategy, &mut b.strategy)
+        {
+            let added = others.iter().filter(|other| !proposals.contains(other));
+            let added: Vec<[Proposal; 2]> = added.copied().collect();
+            proposals.extend(added);
+            *equal = vec![1.0 / proposals.len() as f64; proposals.len()];
+            others.clone_from(proposals);
+            other_shares.clone_from(equal);
+        }
+        emitters
+    }
+
     /// Builds an emitter that emits light without extent uniformly towards the entire first
     /// surface, and towards the windows of virtual planes before that surface. Virtual planes
     /// beyond the first surface have no influence on this emitter.

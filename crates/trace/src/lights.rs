@@ -56,19 +56,27 @@ impl AllLights<Tracer> {
         )
     }
 
+    /// Builds the tracers of two scenes with equally many lights ([`Tracer::pair`]). The photons of
+    /// both are divided by the power of the lights of the first.
+    #[must_use]
+    pub fn pair(scenes: [&Scene; 2]) -> [Self; 2] {
+        let powers = powers(scenes[0], Emitter::new);
+        let [of_a, of_b] = scenes.map(|scene| divided(scene, &powers));
+        let lights = of_a.zip(of_b).map(|((a, planes_of_a), (b, planes_of_b))| {
+            let [a, b] = Tracer::pair([&a, &b]);
+            let traced = |source, planes| TracedScene { source, planes };
+            (traced(a, planes_of_a), traced(b, planes_of_b))
+        });
+        let (a, b): (Vec<_>, Vec<_>) = lights.unzip();
+        [Self::new(scenes[0], a), Self::new(scenes[1], b)]
+    }
+
     fn of_power(
         scene: &Scene,
         emitter: impl Fn(&Scene) -> Emitter,
         tracer: impl Fn(&Scene) -> Tracer,
     ) -> Self {
-        let own = scene.lights().zip(0..).map(|(of, number)| {
-            let run = RunSettings {
-                seed: seed(scene.run.seed, number),
-                ..scene.run
-            };
-            power(&emitter(of), run.seed)
-        });
-        let powers: Vec<f64> = own.collect();
+        let powers = powers(scene, emitter);
         let lights = divided(scene, &powers).map(|(of, planes)| TracedScene {
             source: tracer(&of),
             planes,
@@ -119,6 +127,13 @@ fn seed(seed: u64, light: u64) -> u64 {
     }
     let [low, high, ..] = random::words(seed, Stream::Light, light, 0);
     u64::from(low) | u64::from(high) << 32
+}
+
+/// The power of each light.
+fn powers(scene: &Scene, emitter: impl Fn(&Scene) -> Emitter) -> Vec<f64> {
+    let lights = scene.lights().zip(0..);
+    let power = |(of, number)| power(&emitter(of), seed(scene.run.seed, number));
+    lights.map(power).collect()
 }
 
 /// The flux that an emitter sends out, estimated from photons that are not measured. If

@@ -10,7 +10,7 @@ use etendue_field::Profile;
 /// stays between 0 and 1.14 and falls to zero at the edge, so the weights of rays are bounded.
 /// Profiles other than Hann do not vanish at their edge, and are approximated by a constant. For
 /// light that a surface receives, the density follows the cosine.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ProfileDensity {
     half: f64,
     kind: ProposalKind,
@@ -185,7 +185,7 @@ impl Aim {
 /// that rays from the light to the window have. The other is drawn second, from the range that it
 /// has for the first. All samples start on the light and cross the window. For a point light, the
 /// slope alone is drawn, and the density is that of the slope.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Proposal {
     order: DrawOrder,
     /// Distance of the window from the light.

@@ -62,6 +62,9 @@ pub(crate) const MAX_REDUCED_PHOTONS: u64 = 60_000_000;
 /// zero.
 const MIN_CYCLES: f64 = 1.25;
 
+/// The streams of random words of photons: random numbers, nets and lattices.
+const PHOTONS: [Stream; 3] = [Stream::Photon, Stream::Net, Stream::Lattice];
+
 /// A leg of the path for photons.
 #[derive(Debug)]
 struct FlightLeg {
@@ -129,17 +132,35 @@ impl Tracer {
     /// Builds the tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let streams = [Stream::Photon, Stream::Net, Stream::Lattice];
-        Self::with(scene, Emitter::new(scene), streams)
+        let emitter = Emitter::new(scene);
+        let lattices = emitter.lattices(scene);
+        Self::with(scene, emitter, lattices, PHOTONS)
     }
 
-    fn with(scene: &Scene, emitter: Emitter, streams: [Stream; 3]) -> Self {
+    /// Builds the tracers of two scenes with the same settings of the run. Photons of equal numbers
+    /// are emitted alike, so that most of the noise cancels in the difference of their spectra.
+    #[must_use]
+    pub fn pair(scenes: [&Scene; 2]) -> [Self; 2] {
+        let [a, b] = Emitter::pair(scenes);
+        let lattices = a.lattices(scenes[0]);
+        [
+            Self::with(scenes[0], a, lattices.clone(), PHOTONS),
+            Self::with(scenes[1], b, lattices, PHOTONS),
+        ]
+    }
+
+    fn with(
+        scene: &Scene,
+        emitter: Emitter,
+        lattices: Option<Lattices>,
+        streams: [Stream; 3],
+    ) -> Self {
         // Legs beyond the last virtual plane are not traced.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
         let legs: Vec<FlightLeg> = legs.collect();
         Self {
-            lattices: emitter.lattices(scene),
+            lattices,
             emitter,
             flat: legs.first().and_then(FlightLeg::flat),
             planes: scene.planes.len(),
@@ -162,7 +183,9 @@ impl Tracer {
     #[must_use]
     pub fn with_uniform_emission(scene: &Scene) -> Self {
         let streams = [Stream::Even, Stream::EvenNet, Stream::EvenLattice];
-        Self::with(scene, Emitter::with_uniform_emission(scene), streams)
+        let emitter = Emitter::with_uniform_emission(scene);
+        let lattices = emitter.lattices(scene);
+        Self::with(scene, emitter, lattices, streams)
     }
 
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the

@@ -20,6 +20,7 @@ use std::time::Duration;
                                                                    (docs/rays.md)
   etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h   repeat until done
   etendue run scenes/colors.ron --rgb                              one result for each channel
+  etendue run tilted.ron --against straight.ron                    less noise, if they are alike
 
 Results are in out/NAME unless --out names another folder. Photon counts may be written as 10_000_000, 1e7 \
 or 2^23.
@@ -48,6 +49,13 @@ pub(crate) struct RunArgs {
     /// Begin no new batch after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
     #[arg(long, value_name = "TIME", value_parser = time, allow_hyphen_values = true, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
+
+    /// Measure the scene by its difference from this scene, whose planes must have a theory: the same
+    /// photons are traced through both, and the prediction of this scene is added. The difference
+    /// has less noise the more alike the scenes are. The seed and the settings of the run are those
+    /// of SCENE.ron
+    #[arg(long, value_name = "OTHER.ron", conflicts_with_all = ["resume", "time", "target_error", "rgb", "save"])]
+    pub(crate) against: Option<PathBuf>,
 
     /// Run the scene once for each of red, green and blue, with the same seed. The results are in
     /// folders of these names, beside a page that shows all three

@@ -135,7 +135,7 @@ pub fn data(
     });
     let file = format!("{}.json", summary.scene);
     let method = match summary.method {
-        Method::Given => None,
+        Method::Difference | Method::Given => None,
         Method::Photons => Some(""),
         Method::Backward | Method::Even => Some(" --method backward"),
     };
