@@ -97,14 +97,14 @@ const LEAST_GAIN: f64 = 1.2;
 const UNSEEN: f64 = 0.1;
 
 /// The change of one field of a scene that has one plane.
-struct Change {
+struct ChangedPair {
     scenes: [Scene; 2],
     /// The predictions of both scenes.
     predictions: [Prediction; 2],
 }
 
 /// What one seed finds.
-struct Found {
+struct PairStatistics {
     /// The noise of independent photons over the noise of pairs.
     gain: f64,
     p_value: Option<f64>,
@@ -137,7 +137,7 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
         for (field, value) in changes {
             let changed = scene(&[(*field, (*value).to_owned())]);
             let prediction = predicted(&changed, None).swap_remove(0);
-            let change = Change {
+            let change = ChangedPair {
                 scenes: [original.clone(), changed],
                 predictions: [known.clone(), prediction],
             };
@@ -149,7 +149,9 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
             all.extend(found);
         }
     }
-    let of = |number: fn(&Found) -> Option<f64>| all.iter().filter_map(number).collect::<Vec<_>>();
+    let of = |number: fn(&PairStatistics) -> Option<f64>| {
+        all.iter().filter_map(number).collect::<Vec<_>>()
+    };
     let uniform = uniformity(&of(|found| found.p_value));
     let planted = uniformity(&of(|found| found.p_planted));
     let pulls = of(|found| found.ratio.map(|[ratio, error]| (ratio - 1.0) / error));
@@ -188,9 +190,10 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
     ReportSection::new(format!("Pairs, {}", words(sampling)), text, columns, rows)
 }
 
-fn row(names: &[&str; 3], found: &[Found]) -> Row {
-    let of =
-        |number: fn(&Found) -> Option<f64>| found.iter().filter_map(number).collect::<Vec<_>>();
+fn row(names: &[&str; 3], found: &[PairStatistics]) -> Row {
+    let of = |number: fn(&PairStatistics) -> Option<f64>| {
+        found.iter().filter_map(number).collect::<Vec<_>>()
+    };
     let [gain, _] = mean(&of(|found| Some(found.gain)));
     let [chi2, _] = mean(&of(|found| found.chi2_per_dof));
     let [ratio, error] = mean(&of(|found| found.ratio.map(|[ratio, _]| ratio)));
@@ -207,8 +210,8 @@ fn row(names: &[&str; 3], found: &[Found]) -> Row {
     Row::new(cells.collect(), vec![check])
 }
 
-impl Change {
-    fn found(&self, seed: u64) -> Found {
+impl ChangedPair {
+    fn found(&self, seed: u64) -> PairStatistics {
         let seeded = |scene: &Scene| {
             let mut scene = scene.clone();
             scene.run.seed = seed;
@@ -249,7 +252,7 @@ impl Change {
             error * prediction.slices.norm() < UNSEEN * noise
         });
         let ratio = score(&differences, &variance, &parameter, 0.0);
-        Found {
+        PairStatistics {
             gain: (apart + alone).sqrt() / noise,
             p_value: rest.p_value(seed).filter(|_| is_known),
             p_planted: wrong.p_value(seed).filter(|_| is_known),

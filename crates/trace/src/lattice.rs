@@ -19,7 +19,7 @@ use std::ops::Range;
 
 /// One lattice for each proposal of an emission that is aimed at a window. Proposals that are aimed at
 /// a surface use a net: their rays are no linear function of random numbers.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Lattices {
     /// The vectors g / N, in units of 2⁻⁶⁴.
     steps: Vec<Option<[u64; 4]>>,

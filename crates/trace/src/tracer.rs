@@ -132,9 +132,7 @@ impl Tracer {
     /// Builds the tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let emitter = Emitter::new(scene);
-        let lattices = emitter.lattices(scene);
-        Self::with(scene, emitter, lattices, PHOTONS)
+        Self::with(scene, Emitter::new(scene), scene, PHOTONS)
     }
 
     /// Builds the tracers of two scenes with the same settings of the run. Photons of equal numbers
@@ -142,25 +140,18 @@ impl Tracer {
     #[must_use]
     pub fn pair(scenes: [&Scene; 2]) -> [Self; 2] {
         let [a, b] = Emitter::pair(scenes);
-        let lattices = a.lattices(scenes[0]);
-        [
-            Self::with(scenes[0], a, lattices.clone(), PHOTONS),
-            Self::with(scenes[1], b, lattices, PHOTONS),
-        ]
+        [(scenes[0], a), (scenes[1], b)]
+            .map(|(scene, emitter)| Self::with(scene, emitter, scenes[0], PHOTONS))
     }
 
-    fn with(
-        scene: &Scene,
-        emitter: Emitter,
-        lattices: Option<Lattices>,
-        streams: [Stream; 3],
-    ) -> Self {
+    /// The tracer of a scene, whose lattices are chosen for `lattices`.
+    fn with(scene: &Scene, emitter: Emitter, lattices: &Scene, streams: [Stream; 3]) -> Self {
         // Legs beyond the last virtual plane are not traced.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
         let legs: Vec<FlightLeg> = legs.collect();
         Self {
-            lattices,
+            lattices: emitter.lattices(lattices),
             emitter,
             flat: legs.first().and_then(FlightLeg::flat),
             planes: scene.planes.len(),
@@ -183,9 +174,7 @@ impl Tracer {
     #[must_use]
     pub fn with_uniform_emission(scene: &Scene) -> Self {
         let streams = [Stream::Even, Stream::EvenNet, Stream::EvenLattice];
-        let emitter = Emitter::with_uniform_emission(scene);
-        let lattices = emitter.lattices(scene);
-        Self::with(scene, emitter, lattices, streams)
+        Self::with(scene, Emitter::with_uniform_emission(scene), scene, streams)
     }
 
     /// Emits the photons of a block, and traces them over the first leg if it is flat. Adds the

@@ -1,7 +1,8 @@
 //! Returns the output of `etendue diff --json`.
 
 use super::difference::Diff;
-use super::planes::{ParameterDiff, PlaneDiff};
+use super::pairs::ParameterDiff;
+use super::planes::PlaneDiff;
 use super::stored::StoredResult;
 use etendue_compare::Estimate;
 use etendue_store::fields::FieldChange;

@@ -4,7 +4,6 @@
 //! scenes, so most of the noise cancels in the difference of two batches. The differences of all
 //! batches are independent of each other.
 
-use super::planes::ParameterDiff;
 use super::stored::{StoredBatches, StoredResult, StoredSlices};
 use etendue_compare::{Estimate, PredictedParameter, Residuals, TwoSamples, pull, score};
 use etendue_field::{Complex, Slices};
@@ -19,6 +18,21 @@ pub(super) struct PairedNumbers {
     /// The p-value of the hypothesis that the difference of the predictions is the true difference;
     /// `None` if a prediction is missing or has errors of its own.
     pub(super) p_predicted: Option<f64>,
+}
+
+/// A parameter that both results measure.
+#[derive(Debug)]
+pub(super) struct ParameterDiff {
+    pub(super) name: String,
+    pub(super) unit: String,
+    /// The two measured values. In pairs, the value in the first scene, and this value plus the
+    /// measured change.
+    pub(super) estimates: [Estimate; 2],
+    /// The difference in standard errors, and the p-value of this difference: (a − b)/√(e_a² +
+    /// e_b²), or in pairs (b − a)/e.
+    pub(super) pull: (f64, f64),
+    /// In pairs, the p-value of the hypothesis that nothing but this parameter has changed.
+    pub(super) p_rest: Option<f64>,
 }
 
 /// The differences of the batches of two results at one plane.

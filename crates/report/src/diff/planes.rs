@@ -1,6 +1,6 @@
 //! Tests one plane of two results, and describes the outcome.
 
-use super::pairs::{PairedNumbers, Pairs};
+use super::pairs::{PairedNumbers, Pairs, ParameterDiff};
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
@@ -49,21 +49,6 @@ pub(super) struct Compared {
     invalid: Option<String>,
     /// Whether the two results come from the same photons, and so have the same numbers.
     pub(super) is_identical: bool,
-}
-
-/// A parameter that both results measure.
-#[derive(Debug)]
-pub(super) struct ParameterDiff {
-    pub(super) name: String,
-    pub(super) unit: String,
-    /// The two measured values. In pairs, the value in the first scene, and this value plus the
-    /// measured change.
-    pub(super) estimates: [Estimate; 2],
-    /// The difference in standard errors, and the p-value of this difference: (a − b)/√(e_a² +
-    /// e_b²), or in pairs (b − a)/e.
-    pub(super) pull: (f64, f64),
-    /// In pairs, the p-value of the hypothesis that nothing but this parameter has changed.
-    pub(super) p_rest: Option<f64>,
 }
 
 /// The difference of two predictions.
