@@ -5,10 +5,17 @@ use crate::conclude::code_of;
 use crate::print::{deliver, deliver_json};
 use etendue_report::diff::{Diff, json, text};
 use etendue_store::Failure;
+use etendue_store::file_seal::SealKind;
+use etendue_store::output::OutputFile;
 
 /// Runs `etendue diff`; returns the exit code.
 pub(crate) fn diff(args: &DiffArgs) -> Result<u8, Failure> {
     let diff = Diff::read([&args.a, &args.b], args.alpha)?;
+    if let Some(path) = &args.draw {
+        let bytes = diff.drawn(path)?;
+        let kind = SealKind::of(path).unwrap_or(SealKind::Png);
+        OutputFile::claim_sealed(path, args.force.force, &[], kind)?.write(&bytes)?;
+    }
     match args.json {
         true => deliver_json(&format!("{:#}", json(&diff)))?,
         false => deliver(&text(&diff))?,

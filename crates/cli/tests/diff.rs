@@ -159,6 +159,10 @@ fn pairs_show_changes_below_the_noise() {
         &[none, "share photons; run both with --save batches"],
     );
 
+    found(&folder, "a b --draw d.png", 1, &[pairs]);
+    let drawn = fs::read(path.join("d.png")).unwrap();
+    assert!(drawn.starts_with(b"\x89PNG") && drawn.len() > 10_000);
+
     let of = |arguments: &str| -> serde_json::Value {
         let text = diff(path, &format!("{arguments} --json")).1;
         serde_json::from_str(&text).unwrap()

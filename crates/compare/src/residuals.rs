@@ -226,7 +226,8 @@ impl Residuals {
     /// variance of this term. The second term has the variance σ⁴ at each azimuth. Unlike the
     /// jackknife error of the power, this error does not increase when the measured power
     /// fluctuates upwards.
-    pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
+    #[must_use]
+    pub fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
         let azimuths = self.grid.azimuths as f64;
         let half = self.grid.half_shape();
         let r = self.count() as f64;

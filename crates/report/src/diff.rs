@@ -4,6 +4,7 @@
 mod difference;
 mod json;
 mod pairs;
+mod picture;
 mod planes;
 mod stored;
 mod text;

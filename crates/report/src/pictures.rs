@@ -11,7 +11,9 @@ mod words;
 pub use cross_section::across;
 pub use seen::{Seen, full_radials, light_fields, spectra};
 pub use strip::{path, spectra_are, strip_of};
-pub(crate) use words::{light_field_axes, light_field_quantity, spectrum_axes};
+pub(crate) use words::{
+    light_field_axes, light_field_quantity, power_axes, spectrum_axes, spectrum_quantity,
+};
 
 use crate::drawing;
 use crate::table::{self, spaced, word};
@@ -25,7 +27,7 @@ use etendue_store::arrays::{radial_z, z};
 use etendue_store::{Failure, Results};
 use finer::{Finer, finer_power};
 use std::path::Path;
-use words::{CoordinateNames, spectrum_quantity};
+use words::CoordinateNames;
 
 /// The colors of a spectrum, in decibels below its peak.
 pub const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
@@ -171,8 +173,13 @@ pub fn drawn_scene(scene: &Scene, path: &Path) -> Result<Vec<u8>, Failure> {
         "",
     )
     .map_err(Failure::cannot_run)?;
+    image(&figure, path)
+}
+
+/// A figure as a PNG or SVG file to be written at `path`.
+pub(crate) fn image(figure: &Figure, path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(match path.extension().and_then(|e| e.to_str()) {
-        Some("svg") => figure.svg.into_bytes(),
+        Some("svg") => figure.svg.clone().into_bytes(),
         Some("png") => figure.png().map_err(Failure::cannot_run)?,
         _ => {
             let message = format!(

@@ -252,9 +252,17 @@ pub(crate) struct DiffArgs {
     #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share, allow_hyphen_values = true)]
     pub(crate) alpha: f64,
 
+    /// Draw the spectra of both results, and their difference, at the plane that differs most (.png or
+    /// .svg)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) draw: Option<PathBuf>,
+
     /// Print the comparison as JSON
     #[arg(long)]
     pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 }
 
 #[derive(Debug, Args)]

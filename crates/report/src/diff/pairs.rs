@@ -4,9 +4,10 @@
 //! scenes, so most of the noise cancels in the difference of two batches. The differences of all
 //! batches are independent of each other.
 
+use super::picture::RadialDiff;
 use super::stored::{StoredBatches, StoredResult, StoredSlices};
 use etendue_compare::{Estimate, PredictedParameter, Residuals, TwoSamples, pull, score};
-use etendue_field::{Complex, Slices};
+use etendue_field::{Complex, Orientation, Slices};
 use etendue_store::Failure;
 
 /// What a test in pairs finds at one plane, in addition to its [`TwoSamples`].
@@ -81,6 +82,10 @@ impl<'a> Pairs<'a> {
             slices,
             seed,
         }
+    }
+
+    pub(super) fn radial(&self, orientation: Orientation) -> RadialDiff {
+        RadialDiff::new(self.slices, Some(&self.differences), orientation)
     }
 
     pub(super) fn test(&self) -> (TwoSamples, PairedNumbers) {

@@ -1,6 +1,7 @@
 //! Tests one plane of two results, and describes the outcome.
 
 use super::pairs::{PairedNumbers, Pairs, ParameterDiff};
+use super::picture::RadialDiff;
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
@@ -40,6 +41,8 @@ pub(super) struct Compared {
     /// Numbers of the test in pairs; `None` if the results have independent noise.
     pub(super) pairs: Option<PairedNumbers>,
     pub(super) parameters: Vec<ParameterDiff>,
+    /// The radial power of both results, for a picture.
+    pub(super) radial: RadialDiff,
     pub(super) slopes: [Option<Estimate>; 2],
     /// The difference of the predictions; `None` if a result has no prediction.
     pub(super) prediction: Option<PredictionDiff>,
@@ -82,6 +85,11 @@ impl PlaneDiff {
             PlaneDifference::Compared(compared) => Some(compared),
             _ => None,
         }
+    }
+
+    /// The name of the plane with its comparison, if it is compared.
+    pub(super) fn named(&self) -> Option<(&String, &Compared)> {
+        Some((&self.name, self.compared()?))
     }
 
     pub(super) fn verdict(&self, level: f64) -> Verdict {
@@ -187,21 +195,25 @@ impl ResultPair<'_> {
         if let Some(why) = self.unlike(&of_a.name, &a, &b) {
             return Ok(PlaneDifference::Unlike(why));
         }
-        let (test, pairs, parameters) = if self.is_paired {
+        let orientation = &view(&self.a.index.scene_file, &of_a.name)["orientation"];
+        let orientation = serde_json::from_value(orientation.clone()).unwrap_or_default();
+        let (test, pairs, parameters, radial) = if self.is_paired {
             let batches = |result: &StoredResult| result.batches(&of_a.name, &a.grid);
             let batches = [&batches(self.a)?, &batches(self.b)?];
             let pairs = Pairs::new([&a, &b], batches, self.a.index.seed);
             let parameters = pairs.parameters(&self.a.parameters(&of_a.name, &a)?);
             let (test, numbers) = pairs.test();
-            (test, Some(numbers), parameters)
+            (test, Some(numbers), parameters, pairs.radial(orientation))
         } else {
             let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
-            (test, None, self.parameters(of_a, of_b))
+            let radial = RadialDiff::new([&a, &b], None, orientation);
+            (test, None, self.parameters(of_a, of_b), radial)
         };
         let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
         let compared = Compared {
             parameters,
             pairs,
+            radial,
             slopes: [
                 of_a.slope.estimate(self.a.index.batches.len()),
                 of_b.slope.estimate(self.b.index.batches.len()),

@@ -1,6 +1,6 @@
 //! Names the coordinates of a plane, and returns axes with these names.
 
-use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, VirtualPlane};
+use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{Axis, AxisQuantity};
 use etendue_spectrum::field::FullRadial;
 
@@ -32,7 +32,11 @@ impl CoordinateNames {
     };
 
     pub(super) fn of(plane: &VirtualPlane) -> Self {
-        match plane.orientation {
+        Self::of_orientation(plane.orientation)
+    }
+
+    fn of_orientation(orientation: Orientation) -> Self {
+        match orientation {
             Orientation::Orthogonal => Self::ACROSS,
             _ => Self::ON_SURFACE,
         }
@@ -65,13 +69,18 @@ pub(super) fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis;
 
 /// The axes of the spectrum of a plane, (ρ, ν).
 pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
+    power_axes(plane.orientation, &plane.grid)
+}
+
+/// The axes of the spectrum of a plane with this orientation, (ρ, ν).
+pub(crate) fn power_axes(orientation: Orientation, grid: &SliceGrid) -> [Axis; 2] {
     let axis = |name, unit, axis: &FrequencyAxis| {
         Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
     };
-    let per_angle = CoordinateNames::of(plane).per_angle;
+    let per_angle = CoordinateNames::of_orientation(orientation).per_angle;
     [
-        axis("*ρ*", "cycles/m", &plane.grid.rho),
-        axis("*ν*", per_angle, &plane.grid.nu),
+        axis("*ρ*", "cycles/m", &grid.rho),
+        axis("*ν*", per_angle, &grid.nu),
     ]
 }
 
@@ -102,6 +111,6 @@ pub(crate) fn light_field_quantity() -> AxisQuantity {
 }
 
 /// The quantity of a radial spectrum.
-pub(super) fn spectrum_quantity() -> AxisQuantity {
+pub(crate) fn spectrum_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }
