@@ -78,10 +78,10 @@ def test_sweeps_that_cannot_be(alone, tmp_path, set, message):
 def test_figures(alone, tmp_path):
     told = []
     scene = etendue.Scene(FIG9B, photons=2**14)
-    picture = etendue.figure([scene], out=tmp_path / "one", progress=told.append)
-    assert picture == tmp_path / "one/fig9b/figure.png" and picture.stat().st_size > 10_000
+    picture = etendue.figure([scene], plane="receiver", out=tmp_path / "one", progress=told.append)
+    assert picture == tmp_path / "one/fig9b-receiver/figure.png" and picture.stat().st_size > 10_000
     assert told[-1] == 1
-    assert b"etendue figure fig9b.ron --quality print" in (picture.parent / "figure.json").read_bytes()
+    assert b"etendue figure fig9b.ron --plane receiver --quality print" in (picture.parent / "figure.json").read_bytes()
     half = etendue.Scene(scene.file, name="half", set={"blockers.0.pitch": 0.2})
     both = etendue.figure([scene, half], plane="receiver", quality="draft", out=tmp_path / "two")
     assert both.parent.name == "fig9b-half-receiver"

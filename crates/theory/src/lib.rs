@@ -6,7 +6,7 @@
 //! A [`Chain`] contains a light, travel, masks, and the cosine and diffuse reflection of a
 //! receiver. Masks are opaque shapes, half-planes and cosine gratings in planes. The prediction
 //! contains the values that a measurement would have without noise: the [`slices`] of the windowed
-//! spectrum, an estimate of their error ([`quadrature_error`]), their [`derivative`] with respect
+//! spectrum, an estimate of their error ([`quadrature_error`]), their derivatives ([`with_derivatives`]) with respect
 //! to any parameter of the chain, and the [`projection`] on (x, u).
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is then
@@ -77,7 +77,7 @@ pub use model::{Model, Over};
 pub use nets::{REPLICATES, RayBudget, RayNets};
 pub use obstacle::{Obstacle, ObstacleForm, TriangleTree};
 pub use parallel::{
-    Chain, Harmonics, Operator, Source, at, derivative, projection, quadrature_error, slices,
+    Chain, Harmonics, Operator, Source, at, projection, quadrature_error, slices, with_derivatives,
 };
 pub use parameter::Parameter;
 pub use path::{Observed, PathKind};

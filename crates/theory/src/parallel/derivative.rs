@@ -1,7 +1,7 @@
 //! Derivatives of slices with respect to parameters of the chain.
 
 use crate::model::Model;
-use crate::parallel::slices::{fineness, slices_at_fineness};
+use crate::parallel::slices::{fineness, several};
 use crate::{Chain, Parameter};
 use etendue_field::{SliceGrid, Slices, Window};
 
@@ -13,39 +13,63 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// The derivative of the slices with respect to a parameter, per unit of the parameter.
-/// The derivative is a forward difference with a step of at most 10⁻⁴ of the parameter's scale.
-///
-/// `prediction` must be the slices of this chain under the same window and on the same grid.
+/// The largest number of chains whose slices are computed together, which bounds their memory.
+const MAX_TOGETHER: usize = 16;
+
+/// The slices, and their derivatives with respect to parameters, per unit of each parameter. The
+/// derivatives are forward differences with a step of at most 10⁻⁴ of the parameter's scale.
 ///
 /// # Panics
 /// Panics if the chain has no such parameter.
 #[must_use]
-pub fn derivative(
+pub fn with_derivatives(
     chain: &Chain,
-    parameter: Parameter,
+    parameters: &[Parameter],
     window: &Window,
     grid: &SliceGrid,
-    prediction: &Slices,
-) -> Slices {
-    let value = chain.value(parameter).expect("a parameter of the chain");
-    let step = chain.step(parameter, (window, grid), [RELATIVE_STEP; 2]);
-    let moved = value + step.expect("the same");
-    // Discs are split into the same rectangles as in `prediction`, so the quadrature errors cancel
-    // in the difference.
-    let fineness = fineness(&chain.path(), window, grid);
-    let moved_chain = chain.with(parameter, moved).expect("the same");
-    let path = moved_chain.path();
-    let mut difference = match (path.receiver(), chain.path().receiver()) {
-        (Some(moved), Some(receiver)) => {
-            let nodes = receiver.nodes(window, grid.rho.max());
-            moved.slices_with(nodes, window, grid)
+) -> (Slices, Vec<Slices>) {
+    let moved = parameters.iter().map(|parameter| {
+        let value = chain.value(*parameter).expect("a parameter of the chain");
+        let step = chain.step(*parameter, (window, grid), [RELATIVE_STEP; 2]);
+        let moved = value + step.expect("the same");
+        (
+            chain.with(*parameter, moved).expect("the same"),
+            moved - value,
+        )
+    });
+    let moved: Vec<(Chain, f64)> = moved.collect();
+    let path = chain.path();
+    let (slices, mut derivatives) = if let Some(receiver) = path.receiver() {
+        let nodes = || receiver.nodes(window, grid.rho.max());
+        let of_moved = moved.iter().map(|(moved, _)| {
+            let moved = moved.path();
+            let moved = moved.receiver().expect("a step removes no receiver");
+            moved.slices_with(nodes(), window, grid)
+        });
+        (receiver.slices(window, grid), of_moved.collect())
+    } else {
+        // Discs are split into the same rectangles in all chains, so the quadrature errors cancel in
+        // the differences.
+        let fineness = fineness(&path, window, grid);
+        let mut derivatives = Vec::new();
+        let mut slices = None;
+        for moved in moved
+            .chunks(MAX_TOGETHER)
+            .chain(parameters.is_empty().then_some(&[][..]))
+        {
+            let paths = std::iter::once(chain).chain(moved.iter().map(|(moved, _)| moved));
+            let paths: Vec<_> = paths.map(Chain::path).collect();
+            let mut all = several(&paths, window, grid, &fineness).into_iter();
+            slices = all.next();
+            derivatives.extend(all);
         }
-        _ => slices_at_fineness(&path, window, grid, &fineness),
+        (slices.expect("at least one pass"), derivatives)
     };
-    difference.half -= &prediction.half;
-    difference.half /= etendue_field::Complex::from(moved - value);
-    difference
+    for (derivative, (_, step)) in derivatives.iter_mut().zip(&moved) {
+        derivative.half -= &slices.half;
+        derivative.half /= etendue_field::Complex::from(*step);
+    }
+    (slices, derivatives)
 }
 
 #[cfg(test)]
@@ -80,9 +104,10 @@ mod tests {
             nu: axis(1.1),
         };
         for chain in chains() {
-            let prediction = slices(&chain, &window, &grid);
-            for parameter in chain.parameters() {
-                let forward = derivative(&chain, parameter, &window, &grid, &prediction);
+            let parameters = chain.parameters();
+            let (prediction, all) = with_derivatives(&chain, &parameters, &window, &grid);
+            assert_eq!(prediction, slices(&chain, &window, &grid));
+            for (parameter, forward) in parameters.into_iter().zip(all) {
                 let value = chain.value(parameter).unwrap();
                 let step = 1e-3 * value.abs().max(0.1);
                 let moved = |v| slices(&chain.with(parameter, v).unwrap(), &window, &grid);
@@ -114,8 +139,9 @@ mod tests {
             rho: axis,
             nu: axis,
         };
-        let prediction = slices(&chain, &window, &grid);
-        let slope = derivative(&chain, Parameter::Travel(0), &window, &grid, &prediction);
+        let (prediction, slopes) =
+            with_derivatives(&chain, &[Parameter::Travel(0)], &window, &grid);
+        let slope = &slopes[0];
         assert!(slope.half.iter().all(|s| s.is_finite()));
         assert!(
             slope

@@ -99,6 +99,14 @@ impl AxisSection {
         }
     }
 
+    /// Checks whether the polygons of another section have the same transforms.
+    pub(crate) fn has_same_factors(&self, other: &Self) -> bool {
+        (self.half, self.unit) == (other.half, other.unit)
+            && self.directions == other.directions
+            && self.polygons == other.polygons
+            && self.has_discs == other.has_discs
+    }
+
     /// Replaces the square by the segment that represents δ(x − distance · u).
     fn become_segment(&mut self, distance: f64) {
         let edge = self.direction(self.shear(distance));

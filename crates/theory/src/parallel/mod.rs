@@ -8,7 +8,7 @@
 //! | what | where |
 //! |---|---|
 //! | the chain as a model, and in words | `chain`, `model`, `describe` |
-//! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `derivative`, `projection`, `harmonics` |
+//! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `with_derivatives`, `projection`, `harmonics` |
 //! | terms of the product over masks, as polygons | `expansion`, `weighted_rectangle`, `disc`, `polygon`, `corners` |
 //! | windows, gratings and factors that depend on slopes, as waves | `wave`, `slope`, `row` |
 //! | a diffuse receiver | `receiver` |
@@ -44,7 +44,7 @@ pub(crate) mod work;
 
 pub use at::at;
 pub use chain::{Chain, Operator, Source};
-pub use derivative::derivative;
+pub use derivative::with_derivatives;
 pub use error::quadrature_error;
 pub use harmonics::Harmonics;
 pub use projection::projection;

@@ -3,7 +3,7 @@
 use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
-use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
+use crate::parallel::{at, projection, quadrature_error, ray_list, with_derivatives, work};
 use crate::parameter::{New, Parameter};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
@@ -72,12 +72,9 @@ impl Model for Chain {
             return self.sampled(parameters, over, budget);
         }
         let (window, grid, picture) = over;
-        let slices = slices(self, window, grid);
-        let derivatives = parameters.iter();
+        let (slices, derivatives) = with_derivatives(self, parameters, window, grid);
         Predicted {
-            derivatives: derivatives
-                .map(|parameter| derivative(self, *parameter, window, grid, &slices))
-                .collect(),
+            derivatives,
             error: quadrature_error(self, window, grid, &slices),
             unblocked: self.unblocked(window),
             ..Predicted::exact(slices, projection(self, window, picture))

@@ -14,7 +14,7 @@ const SERIES_PHASE: f64 = 0.2;
 const SERIES_TERMS: u32 = 11;
 
 /// A corner of a polygon.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Vertex {
     /// The coordinates (position, slope).
     pub(crate) at: [f64; 2],
@@ -28,7 +28,7 @@ pub(crate) struct Vertex {
 ///
 /// A segment along (shear, 1) represents δ(position − shear · slope), so integrals along the
 /// segment are over the slope.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polygon(Vec<Vertex>);
 
 pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {

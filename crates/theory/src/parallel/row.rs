@@ -86,17 +86,31 @@ pub(crate) fn slices_by_rows(
     grid: &SliceGrid,
     row: impl Fn([f64; 2], f64) -> Vec<Complex> + Sync,
 ) -> Slices {
+    let all = several_by_rows(grid, 1, |along, rho| vec![row(along, rho)]);
+    all.into_iter().next().expect("one for each row")
+}
+
+/// Computes several slices as [`slices_by_rows`] does; `row` returns a row of each.
+pub(crate) fn several_by_rows(
+    grid: &SliceGrid,
+    count: usize,
+    row: impl Fn([f64; 2], f64) -> Vec<Vec<Complex>> + Sync,
+) -> Vec<Slices> {
     let [azimuths, rows, _] = grid.half_shape();
-    let values: Vec<Vec<Complex>> = (0..azimuths * rows)
+    let values: Vec<Vec<Vec<Complex>>> = (0..azimuths * rows)
         .into_par_iter()
         .map(|i| {
             let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
             row([cos, sin], (i % rows) as f64 * grid.rho.spacing)
         })
         .collect();
-    let mut slices = Slices::zeros(*grid);
-    for (to, from) in slices.half.rows_mut().into_iter().zip(values) {
-        to.into_iter().zip(from).for_each(|(to, from)| *to = from);
+    let mut all = vec![Slices::zeros(*grid); count];
+    for (i, rows) in values.into_iter().enumerate() {
+        for (slices, from) in all.iter_mut().zip(rows) {
+            let mut to = slices.half.rows_mut().into_iter().skip(i);
+            let to = to.next().expect("a row of the grid");
+            to.into_iter().zip(from).for_each(|(to, from)| *to = from);
+        }
     }
-    slices
+    all
 }

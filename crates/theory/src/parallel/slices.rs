@@ -5,10 +5,11 @@ use crate::Chain;
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::corners::Corners;
 use crate::parallel::disc_resolution::DiscResolution;
-use crate::parallel::row::{FrequencyRow, slices_by_rows};
+use crate::parallel::row::{FrequencyRow, several_by_rows};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
+use std::borrow::Cow;
 
 /// If the absolute value of the cosine or sine of an azimuth is below this threshold, it is treated
 /// as exactly zero. Up to rounding errors, such azimuths are π/2 and 0.
@@ -41,29 +42,94 @@ pub(crate) fn slices_at_fineness(
     grid: &SliceGrid,
     fineness: &DiscResolution,
 ) -> Slices {
-    if let Some(receiver) = path.receiver() {
-        return receiver.slices(window, grid);
+    match path.receiver() {
+        Some(receiver) => receiver.slices(window, grid),
+        None => several(std::slice::from_ref(path), window, grid, fineness).remove(0),
     }
-    let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    let expansion = Expansion::new(path, window, &slope, &fineness.0);
-    let products: Vec<_> = expansion
-        .products
-        .iter()
-        .map(|waves| Product::new(&expansion, waves))
-        .collect();
-    let columns = path.has_discs().then(|| expansion.columns());
-    slices_by_rows(grid, |[cos, sin], rho| {
-        let mut row = vec![Complex::ZERO; grid.nu.count()];
-        for product in &products {
-            let x = product.factors(0, rho, cos, grid);
-            let y = product.factors(1, rho, sin, grid);
-            match &columns {
-                Some(columns) => columns.add(expansion.brightness, &x, &y, &mut row),
-                None => expansion.add_terms(&x, &y, &mut row),
+}
+
+/// The slices of several chains without a receiver, whose discs are split at the given resolution.
+/// The chains differ little from the first one: where a chain has the same section along x or y, its
+/// factors are those of the first.
+pub(crate) fn several(
+    paths: &[ChainSegment<'_>],
+    window: &Window,
+    grid: &SliceGrid,
+    fineness: &DiscResolution,
+) -> Vec<Slices> {
+    let expansions = paths.iter().map(|path| {
+        let slope = Slope::new([&window.u, &window.v], path.slope_power());
+        Expansion::new(path, window, &slope, &fineness.0)
+    });
+    let expansions: Vec<Expansion> = expansions.collect();
+    let summed = |(path, expansion)| Summed::new(path, expansion, &expansions[0]);
+    let all: Vec<Summed<'_>> = paths.iter().zip(&expansions).map(summed).collect();
+    several_by_rows(grid, all.len(), |along, rho| {
+        let factors_of = |product: &Product<'_>| {
+            [0, 1].map(|axis| product.factors(axis, rho, along[axis], grid))
+        };
+        let first: Vec<_> = all[0].products.iter().map(factors_of).collect();
+        let row = |one: &Summed<'_>| {
+            one.row(
+                &first,
+                |product, axis| product.factors(axis, rho, along[axis], grid),
+                grid.nu.count(),
+            )
+        };
+        all.iter().map(row).collect()
+    })
+}
+
+/// An expansion, prepared for sums over its terms.
+struct Summed<'a> {
+    expansion: &'a Expansion,
+    products: Vec<Product<'a>>,
+    columns: Option<SectionColumns>,
+    /// Whether the factors of the sections along x and y are those of the first chain.
+    is_shared: [bool; 2],
+}
+
+impl<'a> Summed<'a> {
+    fn new(path: &ChainSegment<'_>, expansion: &'a Expansion, first: &Expansion) -> Self {
+        let products = expansion.products.iter();
+        let has_same_waves = |axis: usize| {
+            let waves = |of: &'a Expansion| of.products.iter().map(move |waves| &waves[axis]);
+            waves(expansion).eq(first.products.iter().map(|waves| &waves[axis]))
+        };
+        Self {
+            expansion,
+            products: products
+                .map(|waves| Product::new(expansion, waves))
+                .collect(),
+            columns: path.has_discs().then(|| expansion.columns()),
+            is_shared: [0, 1].map(|axis| {
+                let [own, others] = [expansion, first].map(|of| &of.sections[axis]);
+                own.has_same_factors(others) && has_same_waves(axis)
+            }),
+        }
+    }
+
+    /// A row of the spectrum. `first` holds the factors of the first chain, for each product and axis;
+    /// `factors` computes those of this chain.
+    fn row(
+        &self,
+        first: &[[Vec<Complex>; 2]],
+        factors: impl Fn(&Product<'_>, usize) -> Vec<Complex>,
+        count: usize,
+    ) -> Vec<Complex> {
+        let mut row = vec![Complex::ZERO; count];
+        for (i, product) in self.products.iter().enumerate() {
+            let [x, y] = [0, 1].map(|axis| match self.is_shared[axis] {
+                true => Cow::Borrowed(&first[i][axis]),
+                false => Cow::Owned(factors(product, axis)),
+            });
+            match &self.columns {
+                Some(columns) => columns.add(self.expansion.brightness, &x, &y, &mut row),
+                None => self.expansion.add_terms(&x, &y, &mut row),
             }
         }
         row
-    })
+    }
 }
 
 /// The polygons of both sections, with one product of waves that multiplies the terms.

@@ -4,7 +4,7 @@ use etendue_field::{Complex, CosineTerm, Grating, cis};
 
 /// A term amplitude · cos(2π s·p + phase) of a factor of a section, where p = (position, slope) is
 /// in units of the window's half-widths.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SectionWave {
     /// The frequency s, in cycles per half-width of the window.
     pub(crate) frequency: [f64; 2],
