@@ -63,7 +63,7 @@ fn follow(command: &Command, workers: &dyn Workers) {
         Command::Sweep(args) => on_threads(&args.work.threads, || {
             let points = SweepPoints::read(&args.request())?;
             follow_points(workers, points.scenes(), &|number| {
-                points.summary(number, &Silent)
+                points.run(number, &Silent)
             })
         }),
         _ => Ok(()),

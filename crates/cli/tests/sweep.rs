@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use crate::common::{fails, files, json, passes, refused, small};
+use crate::common::{fails, files, json, loud, passes, refused, small};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -73,6 +73,30 @@ fn points_have_one_seed_where_that_is_asked_for() {
     );
     assert_eq!(seeds("--seed 7"), own);
     assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
+    // Points of one seed are compared in pairs, as `diff` compares them.
+    let differences = rows(&path.join("s/differences.csv"));
+    let first = &differences[0];
+    let output = loud(
+        path,
+        &format!("diff s/{} s/{} --json", first["from"], first["to"]),
+    );
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["pairs"], true, "{found}");
+    assert_eq!(
+        differences
+            .iter()
+            .filter(|row| row["plane"] == "light")
+            .count()
+            % 3,
+        0
+    );
+    let receiver = differences.iter().find(|row| row["plane"] == "receiver");
+    for key in ["p_value", "noise", "unpaired_noise"] {
+        let (own, of_diff) = (&receiver.unwrap()[key], &found["planes"][1][key]);
+        assert_eq!(own.parse::<f64>().ok(), of_diff.as_f64(), "{key}");
+    }
+    // The light has no blocker before it, so it is the same at all points.
+    assert_eq!(first["noise"], "0.0");
     // If the seed is swept, the values of the sweep are the seeds of the points.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
     passes(path, line);

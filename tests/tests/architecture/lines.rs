@@ -13,13 +13,13 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4393,
+        4411,
         "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`",
     ),
     (
         "compare",
         2927,
-        3104,
+        3105,
         "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs",
     ),
     (
@@ -64,7 +64,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "report",
         2599,
-        4398,
+        4546,
         "tables, texts, times of stages and `diff` came from pipeline; `diff` says when nothing is named; `diff` compares pairs, and measurements",
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),
@@ -90,13 +90,13 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         3636,
         "predictions of other programs are read, and written; a method",
     ),
-    ("studies", 4009, 4009, ""),
+    ("studies", 4009, 4141, "differences of neighbouring points"),
     (
         "theory",
         15390,
-        15736,
+        15_845,
         "derivatives use the rays of the prediction for masks, and stop when accurate; surfaces have \
-         positions, and so have objects beside the path; models of lobes in 2D came from compare; steps of chains have maps and masks",
+         positions, and so have objects beside the path; models of lobes in 2D came from compare; steps of chains have maps and masks; factors are shared with derivatives",
     ),
     (
         "trace",
@@ -109,7 +109,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        68_441,
+        68_476,
         "conventions that are mistaken are planted, and found; pairs over many seeds",
     ),
 ];

@@ -24,6 +24,7 @@ Writes to out/NAME-sweep, or to the folder of --out:
   bandwidth_rho, bandwidth_nu, slope   curves as functions of the first field:
                                        PNG, SVG and CSV (none if they would have
                                        more than 24 panels)
+  differences.csv                      with --common-seed
   points/                              the run of each point. The same command
                                        continues an interrupted sweep. A command
                                        with other values of the same fields runs
@@ -40,8 +41,10 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Use the same seed at all points: the scene's seed, or the value of --seed. Differences
-    /// between points then have less noise, but the errors of the points are not independent.
+    /// Use the same seed at all points: the scene's seed, or the value of --seed. Points keep their
+    /// batches, and differences.csv has the differences of neighbouring points, measured in pairs,
+    /// with less noise (docs/verdict.md). The errors and the verdicts of the points are then not
+    /// independent.
     /// Without this option, each point has its own seed, computed from the scene's seed (or --seed)
     /// and the point's values
     #[arg(long)]

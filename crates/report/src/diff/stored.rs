@@ -110,6 +110,13 @@ pub(super) struct StoredParameter {
     detectable: Option<f64>,
 }
 
+impl StoredPlane {
+    /// Checks whether the prediction has no error of its own.
+    fn is_closed_form(&self) -> bool {
+        self.quadrature_error.is_none() && self.class == "exact"
+    }
+}
+
 impl StoredNumber {
     pub(super) fn estimate(&self, batches: usize) -> Option<Estimate> {
         Some(Estimate {
@@ -201,9 +208,10 @@ impl StoredResult {
     }
 
     fn slices_of(&self, plane: &str) -> String {
-        match self.name {
-            MEASUREMENT => batches_of(plane),
-            _ => format!("{plane}/slices.npz"),
+        let slices = format!("{plane}/slices.npz");
+        match self.index.files.contains_key(&slices) || !self.has_batches() {
+            true => slices,
+            false => batches_of(plane),
         }
     }
 
@@ -246,8 +254,8 @@ impl StoredResult {
         let mut file = self.open(&self.slices_of(&plane.name))?;
         let [azimuth, rho, nu] = ["azimuth", "rho", "nu"].map(|name| file.axis(name));
         let axes = [azimuth?, rho?, nu?];
-        if self.name == MEASUREMENT {
-            return self.slices_of_batches(&plane.name, file, axes);
+        if self.slices_of(&plane.name) == batches_of(&plane.name) {
+            return self.slices_of_batches(plane, file, axes);
         }
         let lengths = [0, 1, 2].map(|i| axes[i].len());
         check_length(&file, "measured", &lengths)?;
@@ -278,14 +286,14 @@ impl StoredResult {
             },
             in_window: plane.in_window,
             predicted: Some(half(&predicted, &grid)),
-            is_closed_form: plane.quadrature_error.is_none() && plane.class == "exact",
+            is_closed_form: plane.is_closed_form(),
         })
     }
 
-    /// The slices of a plane of a measurement, whose axes are those of its batches.
+    /// The slices of a plane of which only batches are stored.
     fn slices_of_batches(
         &self,
-        plane: &str,
+        plane: &StoredPlane,
         mut file: NpzFile,
         [azimuth, half, nu]: [Array1<f64>; 3],
     ) -> Result<StoredSlices, Failure> {
@@ -296,7 +304,11 @@ impl StoredResult {
             rho: axis(&mut file, "rho", &rho)?,
             nu: axis(&mut file, "nu", &nu)?,
         };
-        let StoredBatches { slices, in_window } = self.batches(plane, &grid)?;
+        let StoredBatches { slices, in_window } = self.batches(&plane.name, &grid)?;
+        let array = format!("{}/slices", plane.name);
+        let predicted = self
+            .predictions()?
+            .map(|mut file| file.array(&array, grid.half_shape()));
         let residuals = Residuals::of(grid, slices);
         let mean = residuals.mean();
         Ok(StoredSlices {
@@ -309,8 +321,8 @@ impl StoredResult {
                 mean,
             },
             in_window,
-            predicted: None,
-            is_closed_form: false,
+            predicted: predicted.transpose()?,
+            is_closed_form: plane.is_closed_form(),
         })
     }
 }

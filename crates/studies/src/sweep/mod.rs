@@ -5,6 +5,7 @@
 //! A sweep that was stopped, or whose values have changed, reuses the existing points.
 
 mod bandwidth;
+mod differences;
 mod pictures;
 mod points;
 mod quiet_reporter;

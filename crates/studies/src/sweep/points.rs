@@ -6,7 +6,8 @@ use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{Reporter, Run, Summary, judged};
 use etendue_predict::test_of;
 use etendue_scene::{RunFile, Scene};
-use etendue_store::{ArgumentStyle, Failure, Method};
+use etendue_store::framing::{joined, split};
+use etendue_store::{ArgumentStyle, Failure, Method, SUMMARY, batches, theory};
 use std::collections::BTreeMap;
 
 /// The scene at each point of the requested sweep.
@@ -19,6 +20,8 @@ pub struct SweepPoints {
     pub(crate) points: Vec<SweepPoint>,
     /// A scene for each point.
     pub(crate) scenes: Vec<Scene>,
+    /// Whether batches of the points are kept, because the points have one seed.
+    pub(crate) keeps_batches: bool,
 }
 
 impl SweepPoints {
@@ -51,6 +54,7 @@ impl SweepPoints {
             method: request.method,
             points,
             scenes,
+            keeps_batches: request.common_seed,
         })
     }
 
@@ -88,14 +92,50 @@ impl SweepPoints {
         warnings
     }
 
-    /// Runs a point; returns its `summary.json`.
-    pub fn summary(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
+    /// The names of the files of a point beside its `summary.json`.
+    pub(crate) fn names(&self, point: u32) -> Vec<String> {
+        let scene = self
+            .scenes
+            .get(point as usize)
+            .filter(|_| self.keeps_batches);
+        scene.map_or(Vec::new(), |scene| {
+            let batches = batches::names(&scene.planes).into_iter();
+            batches.chain([theory::FILE.to_owned()]).collect()
+        })
+    }
+
+    /// Runs a point; returns its files as bytes, for this or another process ([`files`]).
+    pub fn run(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
         let case = Run::of(scene.clone(), self.method, Vec::new())?.measured_scene(reporter)?;
         let summary = Summary::new(&case, &judged(&case, &test_of(&case.scene))?, Vec::new());
-        Ok(summary.json(&BTreeMap::new()))
+        let mut files = vec![(SUMMARY.to_owned(), summary.json(&BTreeMap::new()))];
+        if self.keeps_batches {
+            let planes = &case.scene.planes;
+            let each: Vec<_> = case.measurement.batches().collect();
+            files.extend(batches::files(planes, &each)?);
+            let predicted = theory::bytes(planes, &case.predictions)?;
+            files.push((theory::FILE.to_owned(), predicted));
+        }
+        let lengths = files.iter().map(|(name, bytes)| (name, bytes.len()));
+        let words: Vec<(&String, usize)> = lengths.collect();
+        let bytes: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
+        Ok(joined(&words, &bytes.concat()))
     }
+}
+
+/// The names and the bytes of the files of a point, from the bytes that [`SweepPoints::run`] returns;
+/// the first file is `summary.json`.
+pub(crate) fn files(bytes: &[u8]) -> Result<Vec<(String, &[u8])>, Failure> {
+    let (words, mut rest): (Vec<(String, usize)>, _) = split(bytes).map_err(Failure::cannot_run)?;
+    let each = words.into_iter().map(|(name, length)| {
+        let (own, others) = rest.split_at_checked(length)?;
+        rest = others;
+        Some((name, own))
+    });
+    let files: Option<Vec<_>> = each.collect();
+    files.ok_or_else(|| Failure::cannot_run("a message between processes is damaged"))
 }
 
 /// The seed of a point. The seed is derived from the point's scene and the seed of the

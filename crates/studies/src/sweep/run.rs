@@ -1,11 +1,11 @@
 //! Runs a sweep. The missing points are run first, and then the table and the curves are written.
 
-use crate::sweep::pictures;
-use crate::sweep::points::SweepPoints;
+use crate::sweep::points::{SweepPoints, files};
 use crate::sweep::quiet_reporter::Unshown;
 use crate::sweep::request::SweepRequest;
 use crate::sweep::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::sweep::values::{Sweep, SweepPoint, short, shown};
+use crate::sweep::{differences, pictures};
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Run, Task, Work, load};
 use etendue_report::pictures::PictureFiles;
@@ -16,12 +16,14 @@ use etendue_store::{
     Failure, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, VERSION, below, unfinished,
 };
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The file name of the table.
 const TABLE: &str = "sweep.csv";
+/// The file name of the differences of neighbouring points, if points have one seed.
+const DIFFERENCES: &str = "differences.csv";
 
 /// A finished sweep.
 #[derive(Debug)]
@@ -63,7 +65,7 @@ pub fn run(
     );
     let found = run_all(request, folder, &inputs, all, workers, reporter)?;
     let results = Results::claim(folder, plan(request, &inputs))?;
-    finish(request, all, &found, results, reporter)
+    finish((request, folder), all, &found, results, reporter)
 }
 
 /// Fails if the folder already holds a sweep of other fields.
@@ -97,7 +99,10 @@ fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
         .flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
     Plan {
         index: SWEEP,
-        files: pictures.chain([TABLE.to_owned()]).collect(),
+        files: pictures
+            .chain([TABLE.to_owned()])
+            .chain(request.common_seed.then(|| DIFFERENCES.to_owned()))
+            .collect(),
         inputs: inputs.to_vec(),
         force: request.force,
         arguments: request.scene.arguments,
@@ -126,20 +131,31 @@ fn run_all(
     let claimed = |point: u32| {
         let plan = Plan {
             index: SUMMARY,
-            files: Vec::new(),
+            files: all.names(point),
             ..plan(request, inputs)
         };
         Results::claim_below(folder, &names[point as usize], plan)
     };
-    let kept = |results: Results, summary: &[u8]| -> Result<Value, Failure> {
-        results.finish(|_| summary.to_vec())?;
+    let kept = |mut results: Results, point: &[u8]| -> Result<Value, Failure> {
+        let files = files(point)?;
+        let (summary, others) = files
+            .split_first()
+            .ok_or_else(|| Failure::cannot_run("no summary"))?;
+        for (name, bytes) in others {
+            results.write(name, bytes)?;
+        }
+        let mut summary: Value = serde_json::from_slice(summary.1).map_err(Failure::cannot_run)?;
+        results.finish(|files| {
+            summary["files"] = json!(files);
+            json(&summary)
+        })?;
         bar.advance(1);
-        serde_json::from_slice(summary).map_err(Failure::cannot_run)
+        Ok(summary)
     };
     let own = |point: u32| {
         bar.name(&shown(&all.points[point as usize]));
         let results = claimed(point)?;
-        kept(results, &all.summary(point, &Unshown(&*bar))?)
+        kept(results, &all.run(point, &Unshown(&*bar))?)
     };
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
     let is_missing = |point: &u32| summaries[*point as usize].is_none();
@@ -155,7 +171,7 @@ fn run_all(
             &all.scenes,
             &missing,
             &own,
-            &|point, summary| kept(claimed(point)?, summary),
+            &|point, bytes| kept(claimed(point)?, bytes),
         )?,
     };
     drop(bar);
@@ -221,7 +237,7 @@ struct SweepIndex<'a> {
 
 /// Writes the table and the pictures.
 fn finish(
-    request: &SweepRequest,
+    (request, folder): (&SweepRequest, &Path),
     all: &SweepPoints,
     found: &[PointResult],
     mut results: Results,
@@ -230,6 +246,10 @@ fn finish(
     let SweepPoints { base, sweeps, .. } = all;
     let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
     results.write(TABLE, &table::csv(&paths, found)?)?;
+    if request.common_seed {
+        let differences = differences::csv(folder, found, request.together)?;
+        results.write(DIFFERENCES, &differences)?;
+    }
     let stage = reporter.begin(Work::Stage("writing results"));
     let figures = pictures::drawn(&base.name, found, request.together)?;
     let has_curves = !figures.is_empty();
