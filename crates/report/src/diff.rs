@@ -6,6 +6,7 @@ mod json;
 mod pairs;
 mod picture;
 mod planes;
+mod radial;
 mod stored;
 mod text;
 

@@ -64,7 +64,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "report",
         2599,
-        4546,
+        4548,
         "tables, texts, times of stages and `diff` came from pipeline; `diff` says when nothing is named; `diff` compares pairs, and measurements",
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),
@@ -90,7 +90,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         3636,
         "predictions of other programs are read, and written; a method",
     ),
-    ("studies", 4009, 4141, "differences of neighbouring points"),
+    ("studies", 4009, 4146, "differences of neighbouring points"),
     (
         "theory",
         15390,

@@ -4,7 +4,7 @@
 //! scenes, so most of the noise cancels in the difference of two batches. The differences of all
 //! batches are independent of each other.
 
-use super::picture::RadialDiff;
+use super::radial::RadialDiff;
 use super::stored::{StoredBatches, StoredResult, StoredSlices};
 use etendue_compare::{Estimate, PredictedParameter, Residuals, TwoSamples, pull, score};
 use etendue_field::{Complex, Orientation, Slices};

@@ -1,7 +1,7 @@
 //! Tests one plane of two results, and describes the outcome.
 
 use super::pairs::{PairedNumbers, Pairs, ParameterDiff};
-use super::picture::RadialDiff;
+use super::radial::RadialDiff;
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};

@@ -136,21 +136,9 @@ fn run_all(
         };
         Results::claim_below(folder, &names[point as usize], plan)
     };
-    let kept = |mut results: Results, point: &[u8]| -> Result<Value, Failure> {
-        let files = files(point)?;
-        let (summary, others) = files
-            .split_first()
-            .ok_or_else(|| Failure::cannot_run("no summary"))?;
-        for (name, bytes) in others {
-            results.write(name, bytes)?;
-        }
-        let mut summary: Value = serde_json::from_slice(summary.1).map_err(Failure::cannot_run)?;
-        results.finish(|files| {
-            summary["files"] = json!(files);
-            json(&summary)
-        })?;
+    let kept = |results: Results, point: &[u8]| {
         bar.advance(1);
-        Ok(summary)
+        kept(results, point)
     };
     let own = |point: u32| {
         bar.name(&shown(&all.points[point as usize]));
@@ -188,6 +176,23 @@ fn run_all(
             })
         })
         .collect()
+}
+
+/// Writes the files of a point from the bytes of [`SweepPoints::run`]; returns its summary.
+fn kept(mut results: Results, point: &[u8]) -> Result<Value, Failure> {
+    let files = files(point)?;
+    let (summary, others) = files
+        .split_first()
+        .ok_or_else(|| Failure::cannot_run("a point has no summary"))?;
+    for (name, bytes) in others {
+        results.write(name, bytes)?;
+    }
+    let mut summary: Value = serde_json::from_slice(summary.1).map_err(Failure::cannot_run)?;
+    results.finish(|files| {
+        summary["files"] = json!(files);
+        json(&summary)
+    })?;
+    Ok(summary)
 }
 
 /// The folders of the points. The function checks that these folders are inside the folder
