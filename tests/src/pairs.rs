@@ -6,7 +6,7 @@ use crate::report::Bound::{Above, AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{paired, predicted, read, sampled, sound, traced, words};
 use crate::statistics::{mean, uniformity};
-use etendue_compare::{PredictedParameter, Prediction, Residuals, score};
+use etendue_compare::{MIN_DIFFERING, PredictedParameter, Prediction, Residuals, score};
 use etendue_field::Slices;
 use etendue_scene::{RunSettings, Sampling, Scene};
 
@@ -177,7 +177,8 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
         "Two scenes are traced with the same photons, {} each, {}, with {} seeds. *Gain* is the \
          noise of the difference of independent runs over the noise of pairs. *Measured over \
          predicted* is the size of the measured difference along the difference of the predictions; \
-         a pull is its deviation from 1, in units of its stated error. *KS p* is the p-value of a \
+         a pull is its deviation from 1, in units of its stated error, where at least {MIN_DIFFERING} batches \
+         differ. A dash stands where the errors of the predictions are above a tenth of the noise. *KS p* is the p-value of a \
          Kolmogorov–Smirnov test of whether p is uniform, where p tests the measured against the \
          predicted difference. Required, over all changes: p is uniform, the mean pull is 0 and the \
          mean squared pull is 63/61; and p is not uniform if the predicted differences are planted \
@@ -204,6 +205,14 @@ fn row(names: &[&str; 3], found: &[PairStatistics]) -> Row {
         format!("{ratio:.4} ± {error:.4}"),
         format!("{uniform:.3}"),
     ];
+    // Predictions of some scenes have errors above the noise of the pairs.
+    let numbers = numbers.map(|text| {
+        if text.contains("NaN") {
+            "–".to_owned()
+        } else {
+            text
+        }
+    });
     let cells = names.iter().map(|name| (*name).to_owned()).chain(numbers);
     let check =
         Check::new("gain", gain, Above(LEAST_GAIN)).because("less is a fault of the tracers");
@@ -252,12 +261,17 @@ impl ChangedPair {
             error * prediction.slices.norm() < UNSEEN * noise
         });
         let ratio = score(&differences, &variance, &parameter, 0.0);
+        let has_errors = differences.differing() >= MIN_DIFFERING;
         PairStatistics {
             gain: (apart + alone).sqrt() / noise,
             p_value: rest.p_value(seed).filter(|_| is_known),
             p_planted: wrong.p_value(seed).filter(|_| is_known),
-            chi2_per_dof: rest.chi2_per_dof(&variance).filter(|_| is_known),
-            ratio: ratio.filter(|_| is_known).map(|of| [of.measured, of.error]),
+            chi2_per_dof: rest
+                .chi2_per_dof(&variance)
+                .filter(|_| is_known && has_errors),
+            ratio: ratio
+                .filter(|_| is_known && has_errors)
+                .map(|of| [of.measured, of.error]),
         }
     }
 }

@@ -44,7 +44,7 @@ pub use report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
     WedgeShare,
 };
-pub use residuals::Residuals;
+pub use residuals::{MIN_DIFFERING, Residuals};
 pub use score::{ParameterReport, score};
 pub use two_samples::{Estimate, Sample, TwoSamples, pull};
 pub use verdict::{TESTS, Test, Verdict, sidak};

@@ -19,6 +19,9 @@ pub struct Residuals {
     parts: Vec<Array3<Complex>>,
 }
 
+/// The smallest number of pairs that must differ, so that the spread of their differences gives an
+/// error. If a change concerns few photons, most batches are equal in both results.
+pub const MIN_DIFFERING: usize = 24;
 /// Number of rounds of random signs. With this number, the p-value is a multiple of 1/20,000.
 const ROUNDS: u64 = 19_999;
 /// Number of sums that are computed side by side, which the compiler turns into vector instructions.
@@ -139,6 +142,13 @@ impl Residuals {
     #[must_use]
     pub fn count(&self) -> usize {
         self.parts.len()
+    }
+
+    /// The number of residuals that are not zero.
+    #[must_use]
+    pub fn differing(&self) -> usize {
+        let differs = |part: &&Array3<Complex>| part.iter().any(|value| value.norm_sqr() > 0.0);
+        self.parts.iter().filter(differs).count()
     }
 
     /// Each residual, [azimuth, ρ ≥ 0, ν].

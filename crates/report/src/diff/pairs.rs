@@ -6,7 +6,9 @@
 
 use super::radial::RadialDiff;
 use super::stored::{StoredBatches, StoredResult, StoredSlices};
-use etendue_compare::{Estimate, PredictedParameter, Residuals, TwoSamples, pull, score};
+use etendue_compare::{
+    Estimate, MIN_DIFFERING, PredictedParameter, Residuals, TwoSamples, pull, score,
+};
 use etendue_field::{Complex, Orientation, Slices};
 use etendue_store::Failure;
 
@@ -19,6 +21,8 @@ pub(super) struct PairedNumbers {
     /// The p-value of the hypothesis that the difference of the predictions is the true difference;
     /// `None` if a prediction is missing or has errors of its own.
     pub(super) p_predicted: Option<f64>,
+    /// The reason why the pairs give no errors.
+    pub(super) few: Option<String>,
 }
 
 /// A parameter that both results measure.
@@ -84,6 +88,14 @@ impl<'a> Pairs<'a> {
         }
     }
 
+    /// States that too few batches differ to give an error, if that is so.
+    pub(super) fn few(&self) -> Option<String> {
+        let (count, all) = (self.differences.differing(), self.differences.count());
+        (1..MIN_DIFFERING).contains(&count).then(|| {
+            format!("only {count} of {all} batches differ, too few to give errors of changes: more photons are needed")
+        })
+    }
+
     pub(super) fn radial(&self, orientation: Orientation) -> RadialDiff {
         RadialDiff::new(self.slices, Some(&self.differences), orientation)
     }
@@ -100,6 +112,7 @@ impl<'a> Pairs<'a> {
         let numbers = PairedNumbers {
             unpaired_noise: apart.noise,
             p_predicted,
+            few: self.few(),
         };
         (test, numbers)
     }
@@ -107,6 +120,9 @@ impl<'a> Pairs<'a> {
     /// Each parameter of the first result that the pairs determine: its value in the first scene,
     /// and this value plus the change that the differences measure.
     pub(super) fn parameters(&self, of_a: &[PredictedParameter]) -> Vec<ParameterDiff> {
+        if self.few().is_some() {
+            return Vec::new();
+        }
         let variance = self.differences.variance();
         let batches = self.differences.count();
         let each = of_a.iter().filter_map(|parameter| {

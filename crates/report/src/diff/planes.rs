@@ -209,6 +209,7 @@ impl ResultPair<'_> {
             let radial = RadialDiff::new([&a, &b], None, orientation);
             (test, None, self.parameters(of_a, of_b), radial)
         };
+        let few = pairs.as_ref().and_then(|pairs| pairs.few.clone());
         let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
         let compared = Compared {
             parameters,
@@ -220,7 +221,9 @@ impl ResultPair<'_> {
             ],
             prediction: self.prediction([of_a, of_b], &a, &b),
             invalid: (!is_identical).then(|| self.invalid([&a, &b])).flatten(),
-            unresolved: (!is_identical).then(|| self.unresolved(&test)).flatten(),
+            unresolved: (!is_identical)
+                .then(|| few.or_else(|| self.unresolved(&test)))
+                .flatten(),
             is_identical,
             test,
         };
