@@ -16,7 +16,7 @@ mod texture;
 mod xml;
 
 use crate::Export;
-use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
+use etendue_field::{HalfPlane, Mask, Rectangle, Shape};
 use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
@@ -26,17 +26,9 @@ use xml::{Xml, diffuse};
 /// A part of a scene that Mitsuba cannot represent.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotInMitsuba {
-    /// A spot light.
-    #[error(
-        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported; allowed: exponent 0"
-    )]
-    Spot {
-        /// Its exponent n.
-        exponent: f64,
-    },
-    /// A light of rays from a file.
-    #[error("Mitsuba has no light that consists of rays: the rays of a file cannot be exported")]
-    Rays,
+    /// A light, in words, of a kind that Mitsuba lacks.
+    #[error("Mitsuba has no {0}")]
+    Light(String),
     /// Several lights that block each other's light in Mitsuba.
     #[error(
         "in Mitsuba, lights block light; several lights can be exported only if each is a Rectangle or a Disc, all are in one plane, and none overlap"
@@ -90,7 +82,7 @@ pub enum NotInMitsuba {
 /// # Errors
 /// If the scene holds something that Mitsuba cannot represent.
 pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
-    if let Light::Environment { .. } = scene.light
+    if scene.light.environment().is_some()
         && let Some(name) = behind(scene)
     {
         return Err(NotInMitsuba::BehindTheSky { name });

@@ -194,16 +194,7 @@ impl Hole {
     pub fn mapped(&self, factor: f64, shift: [f64; 2]) -> Self {
         let place = |p: [f64; 2]| [0, 1].map(|axis| factor * p[axis] + shift[axis]);
         match self {
-            Self::Shape(Shape::Rectangle(Rectangle { center, size })) => {
-                Self::Shape(Shape::Rectangle(Rectangle {
-                    center: place(*center),
-                    size: size.map(|side| side * factor.abs()),
-                }))
-            }
-            Self::Shape(Shape::Disc(Disc { center, radius })) => Self::Shape(Shape::Disc(Disc {
-                center: place(*center),
-                radius: radius * factor.abs(),
-            })),
+            Self::Shape(shape) => Self::Shape(shape.mapped(factor, shift)),
             // A negative factor turns the plane by half a turn, which keeps the order of corners.
             Self::Polygon(polygon) => Self::Polygon(ConvexPolygon {
                 corners: polygon.corners.iter().map(|p| place(*p)).collect(),
@@ -216,20 +207,12 @@ impl Hole {
     #[must_use]
     pub fn moments(&self) -> HoleMoments {
         match self {
-            Self::Shape(Shape::Rectangle(rectangle)) => {
-                let [xx, yy] = rectangle.size.map(|side| side * side / 12.0);
-                HoleMoments {
-                    area: rectangle.area(),
-                    centroid: rectangle.center,
-                    covariance: [[xx, 0.0], [0.0, yy]],
-                }
-            }
-            Self::Shape(shape @ Shape::Disc(Disc { center, radius })) => {
-                let variance = radius * radius / 4.0;
+            Self::Shape(shape) => {
+                let [xx, yy] = shape.variances();
                 HoleMoments {
                     area: shape.area(),
-                    centroid: *center,
-                    covariance: [[variance, 0.0], [0.0, variance]],
+                    centroid: shape.bounds().center,
+                    covariance: [[xx, 0.0], [0.0, yy]],
                 }
             }
             Self::Polygon(polygon) => moments(&polygon.corners),

@@ -43,7 +43,7 @@ pub use frame::{Frame, TwoPlane, box_corners, enclosing};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use hole::{ConvexPolygon, Hole, HoleMoments};
 pub use image::Image;
-pub use light::Light;
+pub use light::{EmittedRays, Light, LightValues};
 pub use mask::Mask;
 pub use number::{
     brief, byte_size, decimals, fixed, grouped, percent, sinc, tidy, uncertain, whole,

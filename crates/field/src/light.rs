@@ -54,21 +54,108 @@ fn shared<S: Serializer>(rays: &Arc<RayLight>, serializer: S) -> Result<S::Ok, S
     rays.as_ref().serialize(serializer)
 }
 
+/// The rays that a light emits, whatever the radiance along each ray.
+#[derive(Clone, Copy, Debug)]
+pub enum EmittedRays<'a> {
+    /// Rays from all points of a shape, in all directions. Parts of the shape may be dark.
+    OfShape(&'a Shape),
+    /// Rays from the origin, in all directions, with the picture over slopes, if any.
+    OfPoint(Option<&'a Image>),
+    /// Rays along the central ray, with the picture over positions.
+    Parallel(&'a Image),
+    /// Rays from all points of the plane, in all directions.
+    OfSky(&'a Environment),
+    /// The rays of a list, and no others.
+    Listed(&'a Arc<RayLight>),
+}
+
+/// The values of a light that may be changed, each if the light has it.
+#[derive(Debug, Default)]
+pub struct LightValues<'a> {
+    /// The flat shape of the light.
+    pub shape: Option<&'a mut Shape>,
+    /// The picture through which the light shines.
+    pub image: Option<&'a mut Image>,
+    /// The exponent n of the factor cosⁿθ.
+    pub exponent: Option<&'a mut f64>,
+}
+
 impl Light {
-    /// The picture through which the light shines, if any.
+    /// The rays that the light emits.
     #[must_use]
-    pub fn image(&self) -> Option<&Image> {
+    pub fn rays(&self) -> EmittedRays<'_> {
         match self {
-            Self::Projector { image, .. } | Self::Beam { image, .. } => Some(image),
-            _ => None,
+            Self::Area { shape, .. } => EmittedRays::OfShape(shape),
+            Self::Point { .. } => EmittedRays::OfPoint(None),
+            Self::Projector { image, .. } => EmittedRays::OfPoint(Some(image)),
+            Self::Beam { image, .. } => EmittedRays::Parallel(image),
+            Self::Environment { environment } => EmittedRays::OfSky(environment),
+            Self::Rays { rays } => EmittedRays::Listed(rays),
+        }
+    }
+
+    /// The values of the light that may be changed.
+    pub fn values(&mut self) -> LightValues<'_> {
+        match self {
+            Self::Area {
+                shape, exponent, ..
+            } => LightValues {
+                shape: Some(shape),
+                exponent: Some(exponent),
+                image: None,
+            },
+            Self::Projector { image, .. } | Self::Beam { image, .. } => LightValues {
+                image: Some(image),
+                ..LightValues::default()
+            },
+            Self::Point { .. } | Self::Environment { .. } | Self::Rays { .. } => {
+                LightValues::default()
+            }
         }
     }
 
     /// The flat shape of the light, if any.
     #[must_use]
     pub fn shape(&self) -> Option<&Shape> {
+        match self.rays() {
+            EmittedRays::OfShape(shape) => Some(shape),
+            _ => None,
+        }
+    }
+
+    /// The picture through which the light shines, if any.
+    #[must_use]
+    pub fn image(&self) -> Option<&Image> {
+        match self.rays() {
+            EmittedRays::OfPoint(image) => image,
+            EmittedRays::Parallel(image) => Some(image),
+            _ => None,
+        }
+    }
+
+    /// The exponent n if the radiance has a factor cosⁿθ, or 0.
+    #[must_use]
+    pub fn exponent(&self) -> f64 {
         match self {
-            Self::Area { shape, .. } => Some(shape),
+            Self::Area { exponent, .. } => *exponent,
+            _ => 0.0,
+        }
+    }
+
+    /// The environment from which the light comes, if any.
+    #[must_use]
+    pub fn environment(&self) -> Option<&Environment> {
+        match self.rays() {
+            EmittedRays::OfSky(environment) => Some(environment),
+            _ => None,
+        }
+    }
+
+    /// The rays of a light that is a list of rays.
+    #[must_use]
+    pub fn listed(&self) -> Option<&Arc<RayLight>> {
+        match self.rays() {
+            EmittedRays::Listed(rays) => Some(rays),
             _ => None,
         }
     }
@@ -83,30 +170,28 @@ impl Light {
     /// hit only lights for which this is true.
     #[must_use]
     pub fn has_extent(&self) -> bool {
-        match self {
-            Self::Area { .. } | Self::Environment { .. } => true,
-            Self::Point { .. } | Self::Projector { .. } | Self::Beam { .. } | Self::Rays { .. } => {
-                false
-            }
-        }
+        matches!(self.rays(), EmittedRays::OfShape(_) | EmittedRays::OfSky(_))
     }
 
     /// Checks whether the light shines along the same directions everywhere, like an environment.
     #[must_use]
     pub fn is_distant(&self) -> bool {
-        matches!(self, Self::Beam { .. } | Self::Environment { .. })
+        matches!(
+            self.rays(),
+            EmittedRays::Parallel(_) | EmittedRays::OfSky(_)
+        )
     }
 
     /// The lowest and highest coordinate along x or y (0 or 1) of the light's points in
     /// its plane, metres. The coordinates are infinite for an environment.
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
-        let half = match self {
-            Self::Area { shape, .. } => return shape.bounds().extent(axis),
-            Self::Point { .. } | Self::Projector { .. } => 0.0,
-            Self::Beam { image, .. } => image.reach()[axis],
-            Self::Environment { .. } => f64::INFINITY,
-            Self::Rays { rays } => return rays.extent(axis),
+        let half = match self.rays() {
+            EmittedRays::OfShape(shape) => return shape.bounds().extent(axis),
+            EmittedRays::OfPoint(_) => 0.0,
+            EmittedRays::Parallel(image) => image.reach()[axis],
+            EmittedRays::OfSky(_) => f64::INFINITY,
+            EmittedRays::Listed(rays) => return rays.extent(axis),
         };
         [-half, half]
     }
@@ -115,11 +200,13 @@ impl Light {
     /// slopes are unbounded.
     #[must_use]
     pub fn steepest(&self, axis: usize) -> f64 {
-        match self {
-            Self::Projector { image, .. } => image.reach()[axis],
-            Self::Beam { .. } => 0.0,
-            Self::Rays { rays } => rays.steepest(axis),
-            Self::Area { .. } | Self::Point { .. } | Self::Environment { .. } => f64::INFINITY,
+        match self.rays() {
+            EmittedRays::OfPoint(Some(image)) => image.reach()[axis],
+            EmittedRays::Parallel(_) => 0.0,
+            EmittedRays::Listed(rays) => rays.steepest(axis),
+            EmittedRays::OfShape(_) | EmittedRays::OfPoint(None) | EmittedRays::OfSky(_) => {
+                f64::INFINITY
+            }
         }
     }
 }

@@ -63,6 +63,42 @@ impl Shape {
             Self::Disc(disc) => std::f64::consts::PI * disc.radius * disc.radius,
         }
     }
+
+    /// The variances along x and y of points that are uniform in the shape, in square metres.
+    #[must_use]
+    pub fn variances(&self) -> [f64; 2] {
+        match self {
+            Self::Rectangle(rectangle) => rectangle.size.map(|side| side * side / 12.0),
+            Self::Disc(Disc { radius, .. }) => [0.25 * radius * radius; 2],
+        }
+    }
+
+    /// The shape with another centre.
+    #[must_use]
+    pub fn centered_at(&self, center: [f64; 2]) -> Self {
+        match *self {
+            Self::Rectangle(Rectangle { size, .. }) => Self::Rectangle(Rectangle { center, size }),
+            Self::Disc(Disc { radius, .. }) => Self::Disc(Disc { center, radius }),
+        }
+    }
+
+    /// The shape after a scaling of its plane by a factor, which may be negative, and a shift in
+    /// metres.
+    #[must_use]
+    pub fn mapped(&self, factor: f64, shift: [f64; 2]) -> Self {
+        let old = self.bounds().center;
+        let center = [0, 1].map(|axis| factor * old[axis] + shift[axis]);
+        match *self {
+            Self::Rectangle(Rectangle { size, .. }) => Self::Rectangle(Rectangle {
+                center,
+                size: size.map(|side| side * factor.abs()),
+            }),
+            Self::Disc(Disc { radius, .. }) => Self::Disc(Disc {
+                center,
+                radius: radius * factor.abs(),
+            }),
+        }
+    }
 }
 
 /// The distance along the central ray at which a ray meets a triangle. The triangle is

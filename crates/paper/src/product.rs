@@ -8,7 +8,7 @@ use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::Residuals;
 use etendue_field::{
-    Complex, Crossing, Environment, FrequencyAxis, Light, Profile, SliceGrid, TwoPlane, cis,
+    Complex, Crossing, Environment, FrequencyAxis, Profile, SliceGrid, TwoPlane, cis,
 };
 use etendue_pipeline::{Work, method};
 use etendue_scene::Scene;
@@ -64,7 +64,7 @@ impl ShadedCylinder {
     pub(crate) fn new(taken: &FigureData<'_>, text: &Text) -> Result<Self, Failure> {
         let scene = turned(taken, text, 0.0)?;
         let missing = || Failure::cannot_run(format!("{} is no cylinder in a sky", scene.name));
-        let Light::Environment { environment } = &scene.light else {
+        let Some(environment) = scene.light.environment() else {
             return Err(missing());
         };
         let curvature = scene.patches.first().ok_or_else(missing)?.patch.curvature[0];

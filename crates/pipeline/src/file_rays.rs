@@ -1,6 +1,6 @@
 //! The rays of a ray file, each once, in place of photons.
 
-use etendue_field::{Crossing, Ledger, Light, Mask, PhotonSource, TwoPlane};
+use etendue_field::{Crossing, Ledger, Mask, PhotonSource, TwoPlane};
 use etendue_predict::Applicability;
 use etendue_scene::Scene;
 use etendue_store::Failure;
@@ -27,7 +27,7 @@ impl FileRays {
     /// When the light is no ray file, when the file has fewer rays than the scene has batches, or
     /// when a plane lies behind a surface.
     pub(crate) fn new(scene: &Scene) -> Result<Self, Failure> {
-        let Light::Rays { rays } = &scene.light else {
+        let Some(rays) = scene.light.listed() else {
             let what = "the light is no ray file, so no rays are given; use another --method";
             return Err(Failure::bad_input(what));
         };

@@ -1,7 +1,7 @@
 //! Compares the work and the memory that a command needs with the available resources, before the
 //! command begins.
 
-use etendue_field::{Light, byte_size};
+use etendue_field::byte_size;
 use etendue_predict::{Applicability, Memory, too_much_work};
 use etendue_scene::Scene;
 use etendue_store::{Failure, machine};
@@ -37,7 +37,7 @@ pub fn check_one_light(scene: &Scene, what: &str) -> Result<(), Failure> {
 /// no theory applies to the plane, because backward rays do not find the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     let mut lights = scene.lights();
-    if !lights.any(|of| matches!(of.light, Light::Rays { .. })) {
+    if !lights.any(|of| of.light.listed().is_some()) {
         return Ok(());
     }
     let mut planes = scene.planes.iter().zip(theories);

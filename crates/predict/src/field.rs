@@ -72,7 +72,7 @@ fn closed_form(
     plane: &VirtualPlane,
     (grid, assignment): (FieldGrid, Assignment),
 ) -> Option<PredictedField> {
-    if matches!(chain.source.light, etendue_field::Light::Rays { .. }) {
+    if chain.source.light.listed().is_some() {
         return None;
     }
     let on_grid = Harmonics::on_grid(chain, &plane.window, &grid, assignment)?;

@@ -2,7 +2,7 @@
 
 use crate::theory_input::print;
 use etendue_compare::{FirstOrder, FirstOrderChain};
-use etendue_field::{Light, Profile, Shape, Slices, Window};
+use etendue_field::{EmittedRays, Image, Profile, Slices, Window};
 use etendue_scene::Scene;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use etendue_theory::path::{self, PathSystem, rays};
@@ -91,33 +91,21 @@ fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Fi
 
 /// The covariance of a Gaussian that starts as wide as the light, after it has passed the
 /// chain and the window. Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹
-/// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment, which has no width.
+/// to A⁻ᵀ S⁻¹ A⁻¹. Returns `None` for an environment or a list of rays, which has no width.
 fn propagated(system: &PathSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
-    if matches!(system.light, Light::Environment { .. }) {
-        return None;
-    }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
     // A zero width is replaced by a width that is much smaller than the window. An infinite width
     // adds no inverse covariance.
     let narrow = window.map(|v| 1e8 / v);
-    let picture = |w: f64| TAU / (w * w);
-    let light = &system.light;
-    let [a, b] = light
-        .image()
-        .map_or([0.0; 2], |image| image.width.map(picture));
-    let inverse = match light.shape() {
-        Some(Shape::Rectangle(r)) => {
-            let [x, y] = r.size.map(|side| 12.0 / (side * side));
-            [x, y, 0.0, 0.0]
-        }
-        Some(Shape::Disc(disc)) => {
-            let inverse = 4.0 / (disc.radius * disc.radius);
-            [inverse, inverse, 0.0, 0.0]
-        }
-        None if light.is_distant() => [a, b, narrow[2], narrow[3]],
-        None => [narrow[0], narrow[1], a, b],
+    let picture = |image: &Image| image.width.map(|w| TAU / (w * w));
+    let ([x, y], [u, v]) = match system.light.rays() {
+        EmittedRays::OfShape(shape) => (shape.variances().map(|v| 1.0 / v), [0.0; 2]),
+        EmittedRays::OfPoint(image) => ([narrow[0], narrow[1]], image.map_or([0.0; 2], picture)),
+        EmittedRays::Parallel(image) => (picture(image), [narrow[2], narrow[3]]),
+        EmittedRays::OfSky(_) | EmittedRays::Listed(_) => return None,
     };
-    let mut inverse = AffineMap::linear(*chain).spectral_covariance(&diagonal(inverse))?;
+    let inverse = diagonal([x, y, u, v]);
+    let mut inverse = AffineMap::linear(*chain).spectral_covariance(&inverse)?;
     for (row, v) in window.iter().enumerate() {
         inverse[row][row] += 1.0 / v;
     }

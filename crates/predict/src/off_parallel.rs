@@ -1,7 +1,8 @@
 //! Finds the reasons why the theory of light between parallel planes does not apply.
 
-use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
+use etendue_field::{Frame, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
+use etendue_theory::without_closed_form;
 use glam::DVec3;
 
 /// The reasons why the theory does not apply to a plane, in words: oblique incidence, other
@@ -23,15 +24,10 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
             }
         }
     }
-    if scene.light.is_picture() {
-        found.push("the light of a picture, unless all surfaces of the path are smooth".to_owned());
-    }
-    if matches!(scene.light, Light::Environment { .. }) {
-        found.push("light of an environment".to_owned());
-    }
-    if plane.leg > 0 && matches!(scene.light, Light::Rays { .. }) {
-        found.push("light of a ray file beyond the first surface".to_owned());
-    }
+    // On the first leg, the rays of a file are summed, which needs no closed form.
+    let is_sum = plane.leg == 0 && scene.light.listed().is_some();
+    let unknown = without_closed_form(&scene.light).filter(|_| !is_sum);
+    found.extend(unknown.map(str::to_owned));
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
     }

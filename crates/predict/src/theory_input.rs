@@ -1,7 +1,7 @@
 //! Derives the path of light to a plane from the scene.
 
 use crate::chain::stands_before;
-use etendue_field::{Light, Orientation, Patch, Side, Specular, VirtualPlane};
+use etendue_field::{Orientation, Patch, Side, Specular, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
 use etendue_theory::path::{
@@ -15,7 +15,7 @@ use etendue_theory::{Observed, Obstacle, ObstacleForm, Plane};
 /// is met later has too many triangles.
 #[must_use]
 pub fn path(scene: &Scene, plane: &VirtualPlane) -> Option<Observed> {
-    if matches!(scene.light, Light::Rays { .. }) {
+    if scene.light.listed().is_some() {
         return None;
     }
     let legs = scene.path.legs.iter();

@@ -2,7 +2,7 @@
 //! blockers that are too small.
 
 use crate::scene::{BlockerLayer, Scene};
-use etendue_field::{Light, Mask, VirtualPlane, Window, brief};
+use etendue_field::{EmittedRays, Mask, VirtualPlane, Window, brief};
 use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -217,8 +217,8 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let light = light[0].max(light[1]);
         let from_light = light + (hit - light) * at / end;
         let from_plane = x + (end - at) * u;
-        match (plane.leg, &scene.light) {
-            (_, Light::Beam { .. }) => hit,
+        match (plane.leg, scene.light.rays()) {
+            (_, EmittedRays::Parallel(_)) => hit,
             // For an environment, the bound by the light is infinite, so the minimum is the bound
             // by the plane.
             (0, _) => from_plane.min(from_light),

@@ -2,7 +2,7 @@
 
 use crate::mistakes::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
-use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, facet_ratio, interpolated_normal, tidy};
+use etendue_field::{Frame, TwoPlane, VirtualPlane, facet_ratio, interpolated_normal, tidy};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -62,9 +62,7 @@ impl Scene {
     /// A warning about the rays of a ray file that are omitted because they do not go
     /// forward.
     fn rays_behind(&self) -> Option<String> {
-        let Light::Rays { rays } = &self.light else {
-            return None;
-        };
+        let rays = self.light.listed()?;
         let (behind, flux) = (rays.behind(), rays.flux());
         (behind > 0.0).then(|| {
             format!(

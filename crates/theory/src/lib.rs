@@ -54,6 +54,7 @@
 mod barrier;
 pub mod covariance;
 pub mod geometry;
+mod light;
 mod model;
 mod nets;
 mod obstacle;
@@ -73,6 +74,7 @@ mod testing;
 mod words;
 mod work;
 
+pub use light::without_closed_form;
 pub use model::{Model, Over};
 pub use nets::{REPLICATES, RayBudget, RayNets};
 pub use obstacle::{Obstacle, ObstacleForm, TriangleTree};

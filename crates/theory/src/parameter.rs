@@ -1,6 +1,6 @@
 //! Parameters of a model that can be estimated from a measurement.
 
-use etendue_field::{ConvexPolygon, Disc, Hole, Light, Mask, Patch, Rectangle, Shape};
+use etendue_field::{ConvexPolygon, Hole, Light, LightValues, Mask, Patch, Rectangle, Shape};
 
 /// A parameter of a [`Model`](crate::Model). An index is the index of an operator of a chain or of
 /// a surface of a path.
@@ -71,19 +71,22 @@ pub enum Parameter {
 impl Parameter {
     /// The parameters of a light.
     pub(crate) fn of_light(light: &Light) -> Vec<Self> {
-        match light {
-            Light::Area {
-                shape, exponent, ..
-            } => {
-                let sizes = size_axes(std::slice::from_ref(shape)).into_iter();
-                let exponent = (*exponent > 0.0).then_some(Self::SpotExponent);
-                let positions = [0, 1].map(Self::SourcePosition);
-                let sizes = sizes.map(Self::SourceSize).chain(positions);
-                sizes.chain(exponent).collect()
-            }
-            Light::Projector { .. } | Light::Beam { .. } => [0, 1].map(Self::ImageWidth).to_vec(),
-            Light::Point { .. } | Light::Environment { .. } | Light::Rays { .. } => Vec::new(),
-        }
+        let mut light = light.clone();
+        let LightValues {
+            shape,
+            image,
+            exponent,
+        } = light.values();
+        let of_shape = |shape: &mut Shape| {
+            let sizes = size_axes(std::slice::from_ref(shape)).into_iter();
+            let positions = [0, 1].map(Self::SourcePosition);
+            sizes.map(Self::SourceSize).chain(positions)
+        };
+        let of_shape = shape.into_iter().flat_map(of_shape);
+        let exponent = exponent.filter(|n| **n > 0.0).map(|_| Self::SpotExponent);
+        let of_image = image.map(|_| [0, 1].map(Self::ImageWidth));
+        let of_image = of_image.into_iter().flatten();
+        of_shape.chain(exponent).chain(of_image).collect()
     }
 
     /// The index of the mask to which the parameter belongs, or `None` if it has no mask.
@@ -120,7 +123,7 @@ impl Parameter {
     /// The unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
-            Self::ImageWidth(_) if matches!(light, Light::Projector { .. }) => "",
+            Self::ImageWidth(_) if !light.is_distant() => "",
             Self::SpotExponent | Self::Index(_) | Self::Albedo | Self::Lobe => "",
             Self::GratingPhase(_) | Self::Incidence(_) => "rad",
             Self::GratingFrequency(_) | Self::Curvature(..) => "1/m",
@@ -161,33 +164,35 @@ impl Parameter {
 
     /// The readable name of a light's parameter; `name` is the name of the light.
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
-        match (self, light) {
-            (Self::SourceSize(axis), Light::Area { shape, .. }) => {
-                let word = size_word(std::slice::from_ref(shape), axis);
-                Some(format!("{word} of {name}"))
+        Some(match self {
+            Self::SourceSize(axis) => {
+                let word = size_word(std::slice::from_ref(light.shape()?), axis);
+                format!("{word} of {name}")
             }
-            (Self::SourcePosition(axis), _) => Some(position(axis, name)),
-            (Self::SpotExponent, _) => Some(format!("exponent of {name}")),
-            (Self::ImageWidth(axis), _) => Some(format!("width {} of image", axis + 1)),
-            _ => None,
-        }
+            Self::SourcePosition(axis) => position(axis, name),
+            Self::SpotExponent => format!("exponent of {name}"),
+            Self::ImageWidth(axis) => format!("width {} of image", axis + 1),
+            _ => return None,
+        })
     }
 
     /// Replaces the value of the parameter in a light by `new(value)`. Returns `None` if the light
     /// does not have the parameter.
     pub(crate) fn change_light(self, light: &mut Light, new: New<'_>) -> Option<()> {
-        match (self, light) {
-            (Self::SourceSize(axis), Light::Area { shape, .. }) => {
-                resize(std::slice::from_mut(shape), axis, new);
+        let values = light.values();
+        match self {
+            Self::SourceSize(axis) => resize(std::slice::from_mut(values.shape?), axis, new),
+            Self::SourcePosition(axis) => {
+                reposition(std::slice::from_mut(values.shape?), axis, new);
             }
-            (Self::SourcePosition(axis), Light::Area { shape, .. }) => {
-                reposition(std::slice::from_mut(shape), axis, new);
+            Self::SpotExponent => {
+                let exponent = values.exponent?;
+                *exponent = new(*exponent);
             }
-            (Self::SpotExponent, Light::Area { exponent, .. }) => *exponent = new(*exponent),
-            (
-                Self::ImageWidth(axis),
-                Light::Projector { image, .. } | Light::Beam { image, .. },
-            ) => image.width[axis] = new(image.width[axis]),
+            Self::ImageWidth(axis) => {
+                let width = &mut values.image?.width[axis];
+                *width = new(*width);
+            }
             _ => return None,
         }
         Some(())
@@ -372,10 +377,7 @@ fn group_size(shapes: &[Shape]) -> usize {
 
 /// Checks whether a shape ends along an axis.
 fn ends(shape: &Shape, axis: usize) -> bool {
-    match shape {
-        Shape::Rectangle(rectangle) => rectangle.size[axis] <= MAX_SIDE,
-        Shape::Disc(_) => true,
-    }
+    shape.bounds().size[axis] <= MAX_SIDE
 }
 
 /// The axes of the sizes of shapes: one for each side of a single rectangle, and otherwise
@@ -402,21 +404,19 @@ fn size_word(shapes: &[Shape], axis: usize) -> &'static str {
 /// Sets the size of shapes. Several shapes scale by the same factor along both axes.
 fn resize(shapes: &mut [Shape], axis: usize, new: New<'_>) {
     let old = match &shapes[0] {
-        Shape::Rectangle(rectangle) => rectangle.size[axis],
         Shape::Disc(disc) => disc.radius,
+        shape => shape.bounds().size[axis],
     };
     let factor = new(old) / old;
     match shapes {
         [Shape::Rectangle(rectangle)] => rectangle.size[axis] *= factor,
-        _ => shapes.iter_mut().for_each(|shape| scale(shape, factor)),
-    }
-}
-
-/// Scales a shape about its centre.
-pub(crate) fn scale(shape: &mut Shape, factor: f64) {
-    match shape {
-        Shape::Rectangle(rectangle) => rectangle.size = rectangle.size.map(|s| s * factor),
-        Shape::Disc(disc) => disc.radius *= factor,
+        _ => {
+            for shape in shapes {
+                *shape = shape
+                    .mapped(factor, [0.0; 2])
+                    .centered_at(shape.bounds().center);
+            }
+        }
     }
 }
 
@@ -425,9 +425,10 @@ fn reposition(shapes: &mut [Shape], axis: usize, new: New<'_>) {
     let centers = shapes.iter().map(|shape| shape.bounds().center[axis]);
     let old = centers.sum::<f64>() / shapes.len() as f64;
     let by = new(old) - old;
+    let mut shift = [0.0; 2];
+    shift[axis] = by;
     for shape in shapes {
-        let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) = shape;
-        center[axis] += by;
+        *shape = shape.mapped(1.0, shift);
     }
 }
 

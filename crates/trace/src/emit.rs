@@ -11,7 +11,7 @@ use crate::plane_on_leg::PlaneOnLeg;
 use crate::proposal::{DrawOrder, ProfileDensity, Proposal};
 use crate::radiance::radiances;
 use crate::reach::{looks_at_surface, outline, reach};
-use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window};
+use etendue_field::{EmittedRays, Light, Profile, TwoPlane, VirtualPlane, Window};
 use etendue_scene::{Emission, Sampling, Scene};
 use etendue_transform::random;
 use fearless_simd::{Level, dispatch};
@@ -58,33 +58,17 @@ impl Emitter {
     /// only these rays.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        let proposals = match scene.run.emission {
+            Emission::Aimed => proposals(scene),
+            Emission::Plain => Vec::new(),
+        };
+        let strategy = if proposals.is_empty() {
+            unaimed(scene)
+        } else {
+            let equal = vec![1.0 / proposals.len() as f64; proposals.len()];
+            EmissionStrategy::Aimed { proposals, equal }
+        };
         let light = scene.light.clone();
-        let aimed_or = |plain: Plain| {
-            let proposals = match scene.run.emission {
-                Emission::Aimed => proposals(scene),
-                Emission::Plain => Vec::new(),
-            };
-            if proposals.is_empty() {
-                EmissionStrategy::Plain(plain)
-            } else {
-                let equal = vec![1.0 / proposals.len() as f64; proposals.len()];
-                EmissionStrategy::Aimed { proposals, equal }
-            }
-        };
-        let strategy = match light {
-            Light::Area {
-                shape, exponent, ..
-            } => aimed_or(Plain::Area(shape, exponent)),
-            Light::Point { .. } => aimed_or(Plain::Point),
-            // Light with a picture is never aimed; it is drawn in proportion to the picture.
-            Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
-            Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays of a file are not aimed either, because no other rays exist near them.
-            Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
-            Light::Environment { ref environment } => {
-                EmissionStrategy::Sky(FromSky::new(scene, environment))
-            }
-        };
         Self {
             light,
             strategy,
@@ -254,12 +238,31 @@ impl Emitter {
     }
 }
 
+/// The strategy for photons that are not aimed at windows.
+fn unaimed(scene: &Scene) -> EmissionStrategy {
+    EmissionStrategy::Plain(match scene.light.rays() {
+        EmittedRays::OfShape(shape) => Plain::Area(*shape, scene.light.exponent()),
+        EmittedRays::OfPoint(None) => Plain::Point,
+        EmittedRays::OfPoint(Some(image)) => Plain::Slopes(*image),
+        EmittedRays::Parallel(image) => Plain::Positions(*image),
+        EmittedRays::Listed(rays) => Plain::Rays(rays.clone()),
+        EmittedRays::OfSky(environment) => {
+            return EmissionStrategy::Sky(FromSky::new(scene, environment));
+        }
+    })
+}
+
 /// The proposals of aimed emission, in the order of the virtual planes whose windows the light
 /// reaches.
+///
+/// Light with a picture is never aimed, because it is drawn in proportion to the picture. Rays of a
+/// list are not aimed either, because no other rays exist near them. Rays of an environment have
+/// proposals of their own, in [`FromSky`].
 fn proposals(scene: &Scene) -> Vec<[Proposal; 2]> {
-    let extent = match scene.light {
-        Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
-        _ => [[0.0; 2]; 2],
+    let extent = match scene.light.rays() {
+        EmittedRays::OfShape(shape) => [0, 1].map(|axis| shape.bounds().extent(axis)),
+        EmittedRays::OfPoint(None) => [[0.0; 2]; 2],
+        _ => return Vec::new(),
     };
     let [[left, right], [low, high]] = extent;
     let corners = [[left, low], [right, low], [left, high], [right, high]];
@@ -381,7 +384,7 @@ type AxisBounds = [[f64; 2]; 2];
 /// light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
-    if light.has_extent() || matches!(light, Light::Rays { .. }) {
+    if light.has_extent() || light.listed().is_some() {
         return Vec::new();
     }
     let onto_surface = || {

@@ -398,23 +398,11 @@ impl Around {
                 shape: *shape,
             };
         }
-        let moved = |center: [f64; 2]| {
-            let at = frame.to_world(DVec3::new(center[0], center[1], 0.0));
-            [at.x, at.y]
-        };
-        let shape = match *shape {
-            Shape::Rectangle(r) => Shape::Rectangle(Rectangle {
-                center: moved(r.center),
-                ..r
-            }),
-            Shape::Disc(disc) => Shape::Disc(etendue_field::Disc {
-                center: moved(disc.center),
-                ..disc
-            }),
-        };
+        let [x, y] = shape.bounds().center;
+        let at = frame.to_world(DVec3::new(x, y, 0.0));
         Primitive::Flat {
             distance: frame.origin.z,
-            shape,
+            shape: shape.centered_at([at.x, at.y]),
         }
     }
 }

@@ -28,13 +28,13 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         1255,
         "masks of a path have names; glossy lobes came from theory",
     ),
-    ("export", 1413, 1415, "its head says what it leaves out"),
+    ("export", 1413, 1410, "its head says what it leaves out"),
     (
         "field",
         3031,
-        3123,
-        "lobes have names; light fields of slices came from report; what triangles with interpolated normals do to radiance; `grouped` from pipeline; corners \
-         of a hole in the scene's order",
+        3229,
+        "lights say which rays they emit; shapes move; lobes have names; light fields of slices came from report; what triangles with \
+         interpolated normals do to radiance; `grouped` from pipeline; corners of a hole in the scene's order",
     ),
     ("figures", 4650, 4363, ""),
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
@@ -50,7 +50,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "predict",
         2917,
-        2990,
+        2974,
         "chains have steps that Python changes; a smooth mesh stops light on other legs; masks of a path have names; lights have positions; \
          a rim that changes no light is no parameter; `converge` names dark neighbourhoods",
     ),
@@ -69,7 +69,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),
     ("scatter", 1291, 1291, ""),
-    ("scene", 4796, 4814, "memory of pictures is counted"),
+    ("scene", 4796, 4809, "memory of pictures is counted"),
     (
         "scenefile",
         3036,

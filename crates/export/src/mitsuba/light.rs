@@ -16,9 +16,9 @@ impl Writer {
     pub(super) fn light(&mut self, light: &Light) -> Result<(), NotInMitsuba> {
         match light {
             Light::Area { exponent, .. } if *exponent > 0.0 => {
-                return Err(NotInMitsuba::Spot {
-                    exponent: *exponent,
-                });
+                return Err(NotInMitsuba::Light(format!(
+                    "area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported; allowed: exponent 0"
+                )));
             }
             Light::Area {
                 shape, radiance, ..
@@ -42,7 +42,10 @@ impl Writer {
                     .comment("the sky; directions against the central ray are dark, as in Étendue");
                 self.xml.sky(&file, &environment.frame);
             }
-            Light::Rays { .. } => return Err(NotInMitsuba::Rays),
+            Light::Rays { .. } => {
+                let what = "light that consists of rays: the rays of a file cannot be exported";
+                return Err(NotInMitsuba::Light(what.to_owned()));
+            }
         }
         Ok(())
     }

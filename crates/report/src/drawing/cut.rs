@@ -1,7 +1,7 @@
 //! A plane that cuts the scene, and the resulting segments.
 
 use crate::table::spaced;
-use etendue_field::{Light, Mask, Patch, Rectangle, Shape, Specular, VirtualPlane};
+use etendue_field::{Mask, Patch, Rectangle, Shape, Specular, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_scene::limits::MAX_NUMBER;
 use etendue_scene::{BlockerLayer, Event, Leg, MeshObject, Object, Scene};
@@ -203,9 +203,9 @@ impl CuttingPlane<'_> {
     fn light(&self, scene: &Scene) -> Segment {
         let depth = self.scene.path.first_hit() - scene.path.first_hit();
         let dot = 0.005 * scene.path.first_hit();
-        let kind = match scene.light {
-            Light::Environment { .. } => SegmentKind::Sky,
-            _ => SegmentKind::Light,
+        let kind = match scene.light.environment() {
+            Some(_) => SegmentKind::Sky,
+            None => SegmentKind::Light,
         };
         let [low, high] = match scene.light.extent(self.axis) {
             [low, high] if low < high && low.is_finite() => [low, high],

@@ -4,7 +4,7 @@ use super::faults::vector;
 use super::{Resolver, SAME_PLANE};
 use crate::scene::{Leg, MeshObject, Scene};
 use crate::triangles::Triangles;
-use etendue_field::{Frame, Light, Shape, byte_size, tidy};
+use etendue_field::{Frame, byte_size, tidy};
 use etendue_scenefile::{Fault, LightFile, fault};
 use glam::DVec3;
 
@@ -61,11 +61,8 @@ impl Resolver<'_> {
         }
         self.layers(file, &scene.blockers);
         let length = scene.path.first_hit();
-        if let Light::Area { shape, .. } = &mut light {
-            match shape {
-                Shape::Rectangle(rectangle) => rectangle.center = [center.x, center.y],
-                Shape::Disc(disc) => disc.center = [center.x, center.y],
-            }
+        if let Some(shape) = light.values().shape {
+            *shape = shape.centered_at([center.x, center.y]);
         } else if libm::hypot(center.x, center.y) > ON_RAY * length {
             let allowed = "a place on the central ray: only a Rectangle, a Disc or a Spot may stand beside it";
             let shown = vector(&file.center());

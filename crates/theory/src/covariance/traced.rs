@@ -3,12 +3,13 @@
 use super::factors;
 use super::pair::SpectralCovariance;
 use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
+use crate::light::closed_form;
 use crate::parallel::{Chain, Operator};
 use crate::path::rays;
 use crate::path::{self, Observed, PathKind, PathMask};
 use crate::plane::Plane;
 use etendue_field::{
-    Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
+    EmittedRays, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity,
 };
 use std::f64::consts::TAU;
 use std::fmt::{self, Display};
@@ -134,33 +135,24 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
     let endless = f64::INFINITY;
     let of_image = |image: &Image| image.width.map(|width| width * width / TAU);
     let light_of = |[x, y]: [f64; 2], [u, v]: [f64; 2]| SpectralCovariance::new([x, y, u, v]);
-    Ok(match light {
-        Light::Area {
-            shape, exponent, ..
-        } => light_of(variances(shape), [1.0 / exponent; 2]),
-        Light::Point { .. } => light_of([0.0; 2], [endless; 2]),
-        Light::Projector { image, .. } => {
+    Ok(match light.rays() {
+        EmittedRays::OfShape(shape) => {
+            let exponent = -2.0 * closed_form(light).map_err(|_| Untraced::Light)?.power;
+            light_of(shape.variances(), [1.0 / exponent; 2])
+        }
+        EmittedRays::OfPoint(None) => light_of([0.0; 2], [endless; 2]),
+        EmittedRays::OfPoint(Some(image)) => {
             let light = light_of([0.0; 2], of_image(image));
             lined(&light, image, 2)
         }
-        Light::Beam { image, .. } => {
+        EmittedRays::Parallel(image) => {
             let light = light_of(of_image(image), [0.0; 2]);
             lined(&light, image, 0)
         }
-        Light::Environment { environment } => {
-            light_of([endless; 2], [sky_variance(environment)?; 2])
-        }
+        EmittedRays::OfSky(environment) => light_of([endless; 2], [sky_variance(environment)?; 2]),
         // A list of rays is not a Gaussian light field, because each ray is infinitely narrow.
-        Light::Rays { .. } => return Err(Untraced::Light),
+        EmittedRays::Listed(_) => return Err(Untraced::Light),
     })
-}
-
-/// The second central moments of a uniform shape along x and y.
-fn variances(shape: &Shape) -> [f64; 2] {
-    match shape {
-        Shape::Rectangle(rectangle) => rectangle.size.map(|side| side * side / 12.0),
-        Shape::Disc(Disc { radius, .. }) => [0.25 * radius * radius; 2],
-    }
 }
 
 /// The covariance of the light after the light has been multiplied by the grating of the

@@ -1,5 +1,6 @@
 //! Chains: a light and the operators on its light field along the path.
 
+use crate::light::closed_form;
 use crate::parameter::shapes_of;
 use etendue_field::{Hole, Light, Mask, Shape};
 
@@ -99,26 +100,6 @@ pub(crate) struct ParallelEmitter {
     pub(crate) power: f64,
 }
 
-impl ParallelEmitter {
-    /// # Panics
-    /// Panics if light passes through a picture or comes from infinity; `rays` and `scattering`
-    /// predict such light.
-    pub(crate) fn new(light: &Light) -> Self {
-        let (brightness, power) = match *light {
-            Light::Area {
-                radiance, exponent, ..
-            } => (radiance, -0.5 * exponent),
-            Light::Point { intensity } => (intensity, 0.5),
-            _ => panic!("a projector, a beam or an environment has no closed form here"),
-        };
-        Self {
-            shape: light.shape().copied(),
-            brightness,
-            power,
-        }
-    }
-}
-
 /// The part of a chain up to its diffuse surface. If the chain has no diffuse surface, the segment
 /// is the whole chain. Distances are relative to the end of the segment.
 #[derive(Clone, Debug)]
@@ -137,10 +118,11 @@ impl Chain {
     /// The segment of the chain with its light, masks and reflection.
     ///
     /// # Panics
-    /// Panics if an operator other than travel follows a diffuse reflection.
+    /// Panics if the light has no closed form, or if an operator other than travel follows a diffuse
+    /// reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
-            light: ParallelEmitter::new(&self.source.light),
+            light: closed_form(&self.source.light).unwrap_or_else(|why| panic!("{why}")),
             distance: 0.0,
             layers: Vec::new(),
             cosines: 0,

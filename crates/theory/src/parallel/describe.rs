@@ -1,71 +1,29 @@
 //! Textual descriptions of chains.
 
 use crate::geometry::AffineMap;
+use crate::light::in_words;
 use crate::step::{ChainAction, ChainStep};
-use crate::words::{self, formula};
-use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Image, Light, Rectangle, Shape, tidy};
+use crate::words;
+use crate::{Chain, Operator};
+use etendue_field::tidy;
 
 impl Chain {
     /// Describes the chain as text, with one line for each step.
     #[must_use]
     pub fn describe(&self) -> Vec<String> {
         let steps = self.steps().into_iter().map(|step| step.words);
-        std::iter::once(self.source.describe())
-            .chain(steps)
-            .collect()
+        let source = format!(
+            "source  {}: {}",
+            self.source.name,
+            in_words(&self.source.light)
+        );
+        std::iter::once(source).chain(steps).collect()
     }
 
     /// The steps of the chain after its light.
     #[must_use]
     pub fn steps(&self) -> Vec<ChainStep> {
         self.operators.iter().map(Operator::step).collect()
-    }
-}
-
-impl Source {
-    fn describe(&self) -> String {
-        let name = &self.name;
-        match &self.light {
-            &Light::Area {
-                shape,
-                radiance,
-                exponent,
-            } => {
-                let (kind, lobe) = if exponent == 0.0 {
-                    ("Lambertian ", String::new())
-                } else {
-                    ("", format!(" cosⁿθ, n = {exponent}"))
-                };
-                let shape = in_words(&shape);
-                format!("source  {name}: {kind}{shape}, radiance {radiance} W m⁻² sr⁻¹{lobe}")
-            }
-            Light::Point { intensity } => {
-                format!("source  {name}: point, intensity {intensity} W sr⁻¹")
-            }
-            Light::Projector { intensity, image } => {
-                let picture = picture(image, ["u", "v"]);
-                format!("source  {name}: projector, intensity {intensity} W sr⁻¹ × {picture}")
-            }
-            Light::Beam { irradiance, image } => {
-                let picture = picture(image, ["x", "y"]);
-                format!("source  {name}: beam, irradiance {irradiance} W m⁻² × {picture}")
-            }
-            Light::Environment { .. } => format!("source  {name}: environment"),
-            Light::Rays { rays } => {
-                let (count, flux) = (rays.rays().len(), tidy(rays.flux()));
-                format!("source  {name}: {count} rays of a file, {flux} W")
-            }
-        }
-    }
-}
-
-fn picture(image: &Image, [a, b]: [&str; 2]) -> String {
-    let [w, h] = image.width;
-    let envelope = format!("exp(−π({a}²/{w}² + {b}²/{h}²))");
-    match image.grating {
-        Some(grating) => format!("{envelope} {}", formula(&grating, [a, b])),
-        None => envelope,
     }
 }
 
@@ -99,15 +57,5 @@ impl Operator {
                 )
             }
         }
-    }
-}
-
-fn in_words(shape: &Shape) -> String {
-    match shape {
-        Shape::Rectangle(Rectangle {
-            size: [width, height],
-            ..
-        }) => format!("rectangle {width} x {height} m"),
-        Shape::Disc(Disc { radius, .. }) => format!("disc of radius {radius} m"),
     }
 }

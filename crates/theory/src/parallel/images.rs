@@ -1,7 +1,8 @@
 //! The images of a chain in a curved mirror or a thin lens (docs/theory.md, section 9).
 
-use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
+use crate::light::closed_form;
+use crate::{Chain, Operator};
+use etendue_field::{Grating, HalfPlane, Mask};
 
 /// The smallest allowed distance between a plane and the focal plane, divided by the distance
 /// between the plane and the mirror or lens. The image of the focal plane is at infinity. If a
@@ -19,20 +20,13 @@ impl Chain {
     /// reflection, because such chains have no image.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
-        let Light::Area {
-            shape,
-            radiance,
-            exponent,
-        } = self.source.light
-        else {
-            return None;
-        };
+        let emitter = closed_form(&self.source.light).ok()?;
         let path = self.path();
-        if exponent != 0.0 || path.cosines > 0 || path.reflection.is_some() {
+        if emitter.power != 0.0 || path.cosines > 0 || path.reflection.is_some() {
             return None;
         }
-        let light = seen(power, path.distance);
-        let mut at = light.distance;
+        let image_of_light = seen(power, path.distance);
+        let mut at = image_of_light.distance;
         let mut operators = Vec::new();
         for operator in &self.operators {
             if let Operator::Visibility { name, .. } = operator {
@@ -47,16 +41,10 @@ impl Chain {
             }
         }
         operators.push(travel(at));
-        let light = Light::Area {
-            shape: light.of_shape(&shape),
-            radiance,
-            exponent,
-        };
-        let name = self.source.name.clone();
-        Some(Self {
-            source: Source { name, light },
-            operators,
-        })
+        let mut source = self.source.clone();
+        let shape = source.light.values().shape?;
+        *shape = shape.mapped(image_of_light.scale, [0.0; 2]);
+        Some(Self { source, operators })
     }
 }
 
@@ -85,27 +73,16 @@ fn seen(power: f64, distance: f64) -> PlaneImage {
 }
 
 impl PlaneImage {
-    fn of_shape(&self, shape: &Shape) -> Shape {
-        let place = |center: [f64; 2]| center.map(|c| c * self.scale);
-        match *shape {
-            Shape::Rectangle(Rectangle { center, size }) => Shape::Rectangle(Rectangle {
-                center: place(center),
-                size: size.map(|side| side * self.scale.abs()),
-            }),
-            Shape::Disc(Disc { center, radius }) => Shape::Disc(Disc {
-                center: place(center),
-                radius: radius * self.scale.abs(),
-            }),
-        }
-    }
-
     fn of_mask(&self, mask: &Mask) -> Mask {
         match mask {
             Mask::Opaque {
                 shapes,
                 half_planes,
             } => Mask::Opaque {
-                shapes: shapes.iter().map(|shape| self.of_shape(shape)).collect(),
+                shapes: shapes
+                    .iter()
+                    .map(|shape| shape.mapped(self.scale, [0.0; 2]))
+                    .collect(),
                 half_planes: half_planes
                     .iter()
                     .map(|half| self.of_half_plane(half))

@@ -50,3 +50,5 @@ pub use harmonics::Harmonics;
 pub use projection::projection;
 pub use slices::slices;
 use work::work;
+
+pub(crate) use chain::ParallelEmitter;

@@ -18,7 +18,7 @@ impl Model for Chain {
     fn parameters(&self) -> Vec<Parameter> {
         // For a light of finitely many rays, the light that passes an edge changes in jumps when
         // the edge moves, so it has no derivative with respect to the edge's position.
-        if self.given().is_some() {
+        if self.source.light.listed().is_some() {
             return Vec::new();
         }
         let mut all = Parameter::of_light(&self.source.light);
@@ -65,7 +65,7 @@ impl Model for Chain {
     /// the scene, nets of rays are used. For a light that is a list of rays, the prediction is a
     /// sum over these rays.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
-        if let Some(rays) = self.given() {
+        if let Some(rays) = self.source.light.listed() {
             return ray_list::predicted(self, rays, over);
         }
         if self.is_sampled(over, budget) {
@@ -82,14 +82,14 @@ impl Model for Chain {
     }
 
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
-        match self.given() {
+        match self.source.light.listed() {
             Some(rays) => then(&ray_list::GivenRays::new(self, rays, over.0)),
             None => self.followed(over.0).with_rays(over, budget, then),
         }
     }
 
     fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
-        if let Some(rays) = self.given() {
+        if let Some(rays) = self.source.light.listed() {
             ray_list::work(rays, over.1)
         } else if self.is_sampled(over, budget) {
             work_of_nets(over.1, budget)
@@ -118,7 +118,7 @@ impl Chain {
     /// pattern, and behind apertures whose hole is a polygon.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {
-        if self.given().is_some() {
+        if self.source.light.listed().is_some() {
             return false;
         }
         let path = self.path();

@@ -13,20 +13,10 @@ use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use crate::{Chain, Operator};
 use etendue_field::{
-    FluxRay, Light, Projection, ProjectionGrid, RayLight, SliceGrid, Slices, TwoPlane, Window,
+    FluxRay, Projection, ProjectionGrid, RayLight, SliceGrid, Slices, TwoPlane, Window,
 };
 use etendue_transform::SliceTransform;
 use ndarray::Array2;
-
-impl Chain {
-    /// The rays of the light, if the light is a list of rays.
-    pub(crate) fn given(&self) -> Option<&RayLight> {
-        match &self.source.light {
-            Light::Rays { rays } => Some(rays),
-            _ => None,
-        }
-    }
-}
 
 /// A step of a chain, prepared for many rays.
 enum RayStep<'a> {
@@ -168,6 +158,7 @@ fn sums(
 mod tests {
     use super::*;
     use crate::testing::*;
+    use etendue_field::Light;
     use etendue_field::{Complex, FrequencyAxis, Profile, cis};
     use std::f64::consts::TAU;
     use std::sync::Arc;

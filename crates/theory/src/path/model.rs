@@ -381,7 +381,7 @@ impl PathSystem {
 
     /// Checks whether the light field is the same at all distances from the light.
     fn is_alike_everywhere(&self) -> bool {
-        let is_environment = matches!(self.light, Light::Environment { .. });
+        let is_environment = self.light.environment().is_some();
         is_environment && self.masks.is_empty() && self.obstacles.is_empty()
     }
 

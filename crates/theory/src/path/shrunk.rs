@@ -1,8 +1,7 @@
 //! Systems with smaller lights, textures and lobes, in which first-order maps are more accurate.
 
 use super::{Interaction, PathSystem};
-use crate::parameter::scale;
-use etendue_field::{Disc, Light, Pattern, Rectangle, Reflectance, Shape, Weight};
+use etendue_field::{LightValues, Pattern, Reflectance, Weight};
 
 impl PathSystem {
     /// The system with a light, textures and, unless `keeps_lobes`, lobes `factor` times as
@@ -14,10 +13,18 @@ impl PathSystem {
     /// first-order maps falls with the factor.
     #[must_use]
     pub fn shrunk(&self, factor: f64, keeps_lobes: bool) -> Option<Self> {
-        let is_environment = matches!(self.light, Light::Environment { .. });
-        let is_lit_narrowly = self.visited == 1 && !is_environment;
+        let is_lit_narrowly = self.visited == 1 && self.light.environment().is_none();
         let mut system = self.clone();
-        system.light = shrunk_light(&self.light, factor);
+        let LightValues { shape, image, .. } = system.light.values();
+        if let Some(shape) = shape {
+            *shape = shape.mapped(factor, [0.0; 2]);
+        }
+        if let Some(image) = image {
+            image.width = image.width.map(|w| w * factor);
+            if let Some(grating) = &mut image.grating {
+                grating.frequency /= factor;
+            }
+        }
         for surface in &mut system.surfaces[..self.visited] {
             match &mut surface.interaction {
                 Interaction::Specular(_) => {}
@@ -60,25 +67,4 @@ fn shrink(reflectance: &mut Reflectance, factor: f64, lobes: f64) -> bool {
         }
     }
     have_width
-}
-
-/// A light `factor` times as large, about the central ray.
-fn shrunk_light(light: &Light, factor: f64) -> Light {
-    let mut light = light.clone();
-    match &mut light {
-        Light::Projector { image, .. } | Light::Beam { image, .. } => {
-            image.width = image.width.map(|w| w * factor);
-            if let Some(grating) = &mut image.grating {
-                grating.frequency /= factor;
-            }
-        }
-        Light::Area { shape, .. } => {
-            scale(shape, factor);
-            let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
-                shape;
-            *center = center.map(|c| c * factor);
-        }
-        Light::Point { .. } | Light::Environment { .. } | Light::Rays { .. } => {}
-    }
-    light
 }

@@ -22,7 +22,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     });
     let light = &scene.light;
     // A randomly drawn ray never coincides with a ray of a file.
-    if matches!(light, Light::Rays { .. }) {
+    if light.listed().is_some() {
         return false;
     }
     let is_at_point = plane.leg == 0 && plane.distance <= 0.0 && !light.is_distant();

@@ -2,7 +2,7 @@
 
 use crate::radiance::radiance;
 use crate::sky::Sky;
-use etendue_field::{Light, Shape, TwoPlane};
+use etendue_field::{EmittedRays, Light, Shape, TwoPlane};
 use glam::DVec3;
 
 /// The light that a backward ray can find at the beginning of the path.
@@ -17,6 +17,19 @@ pub(super) enum TracedLight {
 }
 
 impl TracedLight {
+    pub(super) fn new(light: &Light) -> Self {
+        match light.rays() {
+            EmittedRays::OfShape(shape) => Self::Area {
+                light: light.clone(),
+                shape: *shape,
+            },
+            EmittedRays::OfSky(environment) => Self::Sky(Sky::new(environment)),
+            EmittedRays::OfPoint(_) | EmittedRays::Parallel(_) | EmittedRays::Listed(_) => {
+                Self::Narrow(light.clone())
+            }
+        }
+    }
+
     /// Returns the radiance along an unoccluded ray; for light without extent, returns the value
     /// of the ray per du dv or dx dy.
     pub(super) fn radiance(&self, ray: &TwoPlane) -> f64 {

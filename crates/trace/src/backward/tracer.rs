@@ -12,7 +12,6 @@ use crate::brdf;
 use crate::heading::Heading;
 use crate::line::{direction, start};
 use crate::sampling::{LAMBERTIAN, point};
-use crate::sky::Sky;
 use etendue_field::{
     Crossing, Frame, Ledger, Light, PhotonSource, Specular, TwoPlane, facet_ratio,
 };
@@ -55,17 +54,7 @@ impl Backward {
             let plane = plane.name.clone();
             return Err(LightNotFound { plane });
         }
-        let light = match &scene.light {
-            Light::Area { shape, .. } => TracedLight::Area {
-                light: scene.light.clone(),
-                shape: *shape,
-            },
-            Light::Environment { environment } => TracedLight::Sky(Sky::new(environment)),
-            Light::Point { .. }
-            | Light::Projector { .. }
-            | Light::Beam { .. }
-            | Light::Rays { .. } => TracedLight::Narrow(scene.light.clone()),
-        };
+        let light = TracedLight::new(&scene.light);
         let planes = scene.planes.iter().enumerate();
         let samplers = planes.map(|(i, p)| PlaneSampler::new(scene, i, p, &light));
         let samplers = samplers.collect();

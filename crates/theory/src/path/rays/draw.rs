@@ -11,13 +11,13 @@
 
 use super::AT_LIGHT;
 use super::backward::Back;
-use super::emission::{EmissionMeasure, point_of};
+use super::emission::EmissionMeasure;
 use crate::geometry::{AffineMap, Matrix};
+use crate::light::{LightPart, LightParts};
 use crate::nets::{DIMENSIONS, LinearDensity, Target};
 use crate::path::PathSystem;
 use crate::plane::Plane;
-use crate::sky::SkyDensity;
-use etendue_field::{Environment, Light, Shape, Window};
+use etendue_field::Window;
 use glam::DVec3;
 
 /// The strategy for sampling rays. No strategy is best for every scene, so all strategies are
@@ -44,20 +44,9 @@ impl RayStrategy {
 #[derive(Clone, Debug)]
 pub(super) struct RaySampler<'a> {
     emission: EmissionMeasure,
-    outer: Outer<'a>,
+    /// Parts of the light, which give the two outer coordinates of a ray.
+    parts: LightParts<'a>,
     by: By<'a>,
-}
-
-/// The sampling of the two outer coordinates of a ray. Only a light with extent needs them, in
-/// addition to the two inner coordinates of its emission.
-#[derive(Clone, Debug)]
-enum Outer<'a> {
-    /// The two additional coordinates are not sampled, because they are the same for all rays.
-    Center,
-    /// Positions on an area light.
-    Shape(Shape),
-    /// Slopes towards an environment.
-    Sky(&'a Environment, Box<SkyDensity<'a>>),
 }
 
 #[derive(Clone, Debug)]
@@ -94,42 +83,6 @@ enum By<'a> {
     },
 }
 
-impl<'a> Outer<'a> {
-    /// The density of directions towards an environment, or `None` if no part of the
-    /// environment emits light.
-    fn new(system: &'a PathSystem, plane: Option<&Plane>) -> Option<Self> {
-        Some(match &system.light {
-            Light::Area { shape, .. } => Self::Shape(*shape),
-            Light::Environment { environment } => {
-                let met = plane.filter(|plane| plane.is_arriving() && system.visited == 0);
-                let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
-                Self::Sky(environment, Box::new(SkyDensity::new(environment, normal)?))
-            }
-            Light::Point { .. }
-            | Light::Projector { .. }
-            | Light::Beam { .. }
-            | Light::Rays { .. } => Self::Center,
-        })
-    }
-
-    /// The two outer coordinates of a ray and their density, or `None` if the ray does not
-    /// leave the light's plane towards positive z.
-    fn draw(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
-        match self {
-            Self::Center => Some(([0.0; 2], 1.0)),
-            Self::Shape(shape) => Some((point_of(shape, at), 1.0 / shape.area())),
-            Self::Sky(environment, sky) => {
-                let from = sky.draw(at);
-                let along = -environment.frame.vector_to_world(from);
-                let density = sky.density(from, environment.map.radiance(from));
-                // dω = cos³ du dv.
-                let slopes = [along.x / along.z, along.y / along.z];
-                (along.z > 0.0).then(|| (slopes, density * along.z.powi(3)))
-            }
-        }
-    }
-}
-
 impl<'a> RaySampler<'a> {
     /// The sampler of a strategy, or `None` if `jacobian` does not determine the ray for a
     /// target. `center` is the point where the central ray lands, and `jacobian` is the derivative
@@ -146,7 +99,9 @@ impl<'a> RaySampler<'a> {
         strategy: RayStrategy,
     ) -> Option<Self> {
         let emission = system.emission();
-        let outer = Outer::new(system, plane)?;
+        let met = plane.filter(|plane| plane.is_arriving() && system.visited == 0);
+        let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
+        let parts = LightParts::new(&system.light, normal)?;
         let profiles = [window.x, window.y, window.u, window.v];
         let aim = |row: usize| {
             let block = |columns: [usize; 2]| -> Matrix<2> {
@@ -166,8 +121,8 @@ impl<'a> RaySampler<'a> {
         };
         let by = match strategy {
             RayStrategy::Picture => By::Picture(system.picture_densities()?),
-            RayStrategy::Positions => match (&outer, plane) {
-                (Outer::Sky(..), Some(plane)) if system.visited == 0 => By::Straight {
+            RayStrategy::Positions => match (&parts, plane) {
+                (LightParts::Sky(..), Some(plane)) if system.visited == 0 => By::Straight {
                     positions: Box::new(
                         [window.x, window.y].map(|profile| LinearDensity::of(&profile)),
                     ),
@@ -178,7 +133,7 @@ impl<'a> RaySampler<'a> {
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
                 // Rays from one point have two coordinates, which cannot fill the plane's four.
-                if matches!(outer, Outer::Center) {
+                if matches!(parts, LightParts::Whole) {
                     return None;
                 }
                 if let Some(plane) = plane {
@@ -187,7 +142,7 @@ impl<'a> RaySampler<'a> {
                     let by = By::Back { window, back };
                     return Some(Self {
                         emission,
-                        outer,
+                        parts,
                         by,
                     });
                 }
@@ -207,7 +162,7 @@ impl<'a> RaySampler<'a> {
         };
         Some(Self {
             emission,
-            outer,
+            parts,
             by,
         })
     }
@@ -230,7 +185,7 @@ impl<'a> RaySampler<'a> {
                 Some((placed([0.0; 2], [s, t]), first.value(s) * second.value(t)))
             }
             By::Straight { positions, plane } => {
-                let (slopes, of_light) = self.outer.draw([c, d])?;
+                let (slopes, of_light) = self.outer([c, d])?;
                 let [[x, of_x], [y, of_y]] = [positions[0].draw(a), positions[1].draw(b)];
                 let (point, normal) = plane.point([x, y])?;
                 let along = DVec3::new(slopes[0], slopes[1], 1.0);
@@ -252,7 +207,7 @@ impl<'a> RaySampler<'a> {
                 inverse,
                 determinant,
             } => {
-                let (drawn, of_light) = self.outer.draw([c, d])?;
+                let (drawn, of_light) = self.outer([c, d])?;
                 let [s, t] = [first.quantile(a), second.quantile(b)];
                 let from = crate::geometry::times(outer, &drawn);
                 let left = [s - center[0] - from[0], t - center[1] - from[1]];
@@ -282,10 +237,22 @@ impl<'a> RaySampler<'a> {
 
     /// Checks whether a ray starts at a point that belongs to the light.
     fn emits(&self, [x, y, ..]: &[f64; 4]) -> bool {
-        match &self.outer {
-            Outer::Shape(shape) => shape.contains(*x, *y),
-            Outer::Center | Outer::Sky(..) => true,
+        match &self.parts {
+            LightParts::Points(shape) => shape.contains(*x, *y),
+            LightParts::Whole | LightParts::Sky(..) => true,
         }
+    }
+
+    /// The two outer coordinates of a ray and their density, or `None` if the ray does not
+    /// leave the light's plane towards positive z.
+    fn outer(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
+        let (part, density) = self.parts.draw(at)?;
+        Some(match part {
+            LightPart::Whole => ([0.0; 2], density),
+            LightPart::Point(position) => (position, density),
+            // dω = cos³ du dv.
+            LightPart::Sky { slopes, cosine, .. } => (slopes, density * cosine.powi(3)),
+        })
     }
 }
 

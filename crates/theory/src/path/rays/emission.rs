@@ -2,9 +2,7 @@
 
 use crate::nets::LinearDensity;
 use crate::path::{PathMask, PathSystem};
-use etendue_field::{Light, Shape};
-use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// The ray coordinates that parametrise a light's emission. The two inner coordinates are two of x,
 /// y, u and v. For a light with extent, the other two coordinates are also needed.
@@ -75,50 +73,5 @@ impl PathSystem {
             })
         };
         Some([along(0)?, along(1)?])
-    }
-}
-
-/// The flux, per unit of the emission's coordinates, of the ray (x, y, u, v) that leaves a
-/// light:
-///
-/// | light | flux |
-/// |---|---|
-/// | projector | I · image(u, v) · (1 + u² + v²)^(−3/2) du dv |
-/// | point | the same with a white image |
-/// | beam | E · image(x, y) dx dy |
-/// | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
-/// | environment | L(u, v) (1 + u² + v²)⁻² dx dy du dv |
-pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
-    let [x, y, u, v] = ray;
-    let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
-    match light {
-        Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
-        Light::Point { intensity } => intensity * cosine.powi(3),
-        Light::Beam { irradiance, image } => irradiance * image.value(x, y),
-        Light::Area {
-            radiance, exponent, ..
-        } => radiance * cosine.powi(4) * libm::pow(cosine, *exponent),
-        Light::Environment { environment } => {
-            environment.radiance(DVec3::new(u, v, 1.0)) * cosine.powi(4)
-        }
-        Light::Rays { .. } => panic!("rays of a file are summed, not drawn"),
-    }
-}
-
-/// Maps a point (a, b) of the unit square to a point of a shape, so that uniform points of the
-/// square are uniform on the shape.
-pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
-    match shape {
-        Shape::Rectangle(rectangle) => {
-            let [x, y] = rectangle.center;
-            let [w, h] = rectangle.size;
-            [x + w * (a - 0.5), y + h * (b - 0.5)]
-        }
-        Shape::Disc(disc) => {
-            let [x, y] = disc.center;
-            let (sin, cos) = libm::sincos(TAU * b);
-            let r = disc.radius * a.sqrt();
-            [x + r * cos, y + r * sin]
-        }
     }
 }

@@ -75,7 +75,6 @@ pub use defect::{defect, radiance_defect};
 pub use predict::{LightRay, linear, sampled};
 
 pub(crate) use central::{CentralHit, Incidence};
-pub(crate) use emission::{emitted, point_of};
 pub(crate) use predict::{predict, with_rays};
 pub(crate) use trace::bent;
 

@@ -1,9 +1,9 @@
 //! Predicted slices behind specular surfaces.
 
 use super::draw::{RaySampler, RayStrategy};
-use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
 use crate::geometry::{AffineMap, SpectrumMap};
+use crate::light::emitted;
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, NetPoints, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
@@ -11,7 +11,7 @@ use crate::path::differences::{Differences, DrawnField};
 use crate::path::{AtMask, Observed, PathMask, PathSystem, PreparedPath};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
-use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
+use etendue_field::{Frame, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -229,7 +229,7 @@ fn linear_field<'a>(
     let Observed { system, plane } = view;
     let rays = map.rays();
     let legs = AffineLeg::all(view);
-    let is_sky = matches!(system.light, Light::Environment { .. });
+    let is_sky = system.light.environment().is_some();
     let by_angle = is_sky && plane.is_arriving() && system.visited == 0;
     let distance = plane.frame.origin.z;
     move |ray: [f64; 4]| {

@@ -10,7 +10,7 @@ use super::guide::Gaussian;
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::path::{Observed, PathSystem};
 use crate::path::{ScatteringSurface, towards};
-use etendue_field::{Frame, Light, Orientation, Patch};
+use etendue_field::{EmittedRays, Frame, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -41,7 +41,7 @@ impl DirectionCoordinates {
         let first = from.map_or(0, |from| from.number + 1);
         let to = scatterers.get(leg);
         match (from, to) {
-            (None, _) if matches!(system.light, Light::Beam { .. }) => Self::Angles,
+            (None, _) if matches!(system.light.rays(), EmittedRays::Parallel(_)) => Self::Angles,
             (_, Some(to)) if to.number == first => {
                 Self::on_patch(system.surfaces[first].patch, &to.frame)
             }

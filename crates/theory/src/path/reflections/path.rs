@@ -4,15 +4,15 @@ use super::aim::DirectionCoordinates;
 use super::direction::OutgoingDirections;
 use super::guide::{Conditional, Gaussian, HeavyTailedGaussian};
 use super::sky::SkyRays;
+use crate::light::{emitted, point_of};
 use crate::nets::{DIMENSIONS, RayNode};
 use crate::obstacle::LegRay;
 use crate::path::local;
-use crate::path::rays::{emitted, point_of};
 use crate::path::{
     AtMask, Observed, PatchExtent, PathChain, PathSurface, PreparedPath, SAME_DISTANCE,
     ScatteringSurface, chain,
 };
-use etendue_field::{Light, TwoPlane, Window};
+use etendue_field::{EmittedRays, Light, TwoPlane, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -53,8 +53,8 @@ impl<'a> PathStart<'a> {
     ) -> Option<Self> {
         let light = &view.system.light;
         let at_light = || of_light(&guide.before(&chain.maps[0])?, light);
-        Some(match light {
-            Light::Environment { environment } => {
+        Some(match light.rays() {
+            EmittedRays::OfSky(environment) => {
                 let first = chain.scatterers.first()?;
                 let surface = &view.system.surfaces[first.number];
                 let is_aimed_at_it = matches!(aim, DirectionCoordinates::Patch { .. });
@@ -63,11 +63,10 @@ impl<'a> PathStart<'a> {
                 let rays = SkyRays::new(environment, &guide, (first, has_lobe), aim)?;
                 Self::Sky(Box::new(rays))
             }
-            Light::Beam { .. } => Self::Beam(at_light()?.given([2, 3])?),
-            Light::Area { .. }
-            | Light::Point { .. }
-            | Light::Projector { .. }
-            | Light::Rays { .. } => Self::Points(at_light()?.given([0, 1])?),
+            EmittedRays::Parallel(_) => Self::Beam(at_light()?.given([2, 3])?),
+            EmittedRays::OfShape(_) | EmittedRays::OfPoint(_) | EmittedRays::Listed(_) => {
+                Self::Points(at_light()?.given([0, 1])?)
+            }
         })
     }
 }

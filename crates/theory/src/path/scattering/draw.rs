@@ -8,15 +8,14 @@
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
-use super::incoming::{LightPart, secant};
+use super::incoming::secant;
 use crate::geometry::{AffineMap, Matrix, product, times};
+use crate::light::{LightPart, LightParts};
 use crate::nets::LinearDensity;
 use crate::path::{PathChain, PathSystem};
-use crate::sky::SkyDensity;
-use etendue_field::{Frame, Light, Shape, Window};
+use etendue_field::{EmittedRays, Frame, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// A strategy for sampling rays and parts of the light. No strategy is best for every scene, so
 /// several strategies are tried on each scene.
@@ -42,7 +41,7 @@ impl LightStrategy {
     pub(super) fn in_effect(self, system: &PathSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
-        let has_center = !matches!(system.light, Light::Environment { .. });
+        let has_center = system.light.environment().is_none();
         Self {
             mirrored: self.mirrored && has_lobe && has_center,
             by_lobe: self.by_lobe && has_lobe && has_extent,
@@ -129,9 +128,9 @@ impl Mirrored {
         };
         // `free` is the index of the first of two coordinates that vary among rays from the
         // light's central point or, for a beam, among rays along the beam's axis.
-        let free = match system.light {
-            Light::Environment { .. } => return None,
-            Light::Beam { .. } => 0,
+        let free = match system.light.rays() {
+            EmittedRays::OfSky(_) => return None,
+            EmittedRays::Parallel(_) => 0,
             _ => 2,
         };
         let onto = &chain.maps[0];
@@ -187,7 +186,8 @@ impl Mirrored {
 #[derive(Clone, Debug)]
 pub(super) struct Lights<'a> {
     system: &'a PathSystem,
-    sky: Option<Arc<SkyDensity<'a>>>,
+    /// Parts that are sampled independently of the surface; `None` if the light is dark.
+    parts: Option<LightParts<'a>>,
     /// Whether half of the sampled parts of the light follow the lobe.
     by_lobe: bool,
     /// The number of cells along each side of the unit square; one part of the light is sampled in
@@ -196,16 +196,16 @@ pub(super) struct Lights<'a> {
 }
 
 impl<'a> Lights<'a> {
-    /// Builds the sampler for a system in an environment with the density `sky`.
+    /// Builds the sampler for a system whose light has the given parts.
     pub(super) fn new(
         system: &'a PathSystem,
-        sky: Option<Arc<SkyDensity<'a>>>,
+        parts: Option<LightParts<'a>>,
         strategy: LightStrategy,
     ) -> Self {
         let strategy = strategy.in_effect(system);
         Self {
             system,
-            sky,
+            parts,
             by_lobe: strategy.by_lobe,
             side: if strategy.quarters { 2 } else { 1 },
         }
@@ -213,7 +213,8 @@ impl<'a> Lights<'a> {
 
     /// Builds the sampler for a changed system in the same environment.
     pub(super) fn of<'b>(&'b self, system: &'b PathSystem, strategy: LightStrategy) -> Lights<'b> {
-        Lights::new(system, self.sky.clone(), strategy)
+        let parts = self.parts.as_ref().map(|parts| parts.of(&system.light));
+        Lights::new(system, parts, strategy)
     }
 
     /// The sampled parts of the light for a point of the surface. There is a single part,
@@ -235,71 +236,18 @@ impl<'a> Lights<'a> {
 
     /// A sampled part of the light, and the sampling density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(LightPart, f64)> {
-        let light = &self.system.light;
-        if !light.has_extent() {
-            return Some((LightPart::Whole, 1.0));
-        }
+        let parts = self.parts.as_ref()?;
         if !self.by_lobe {
-            return self.by_light([a, b]);
+            return parts.draw([a, b]);
         }
         let lobe = LobeDensity::new(self.system, leaving);
         let (part, by_light) = if a < 0.5 {
-            self.by_light([2.0 * a, b])?
+            parts.draw([2.0 * a, b])?
         } else {
-            self.towards(leaving, lobe.draw([2.0 * a - 1.0, b])?)?
+            parts.seen(leaving.point, lobe.draw([2.0 * a - 1.0, b])?)?
         };
         let by_lobe = lobe.density(self.direction(leaving, part)) * self.steradians(leaving, part);
         Some((part, 0.5 * (by_light + by_lobe)))
-    }
-
-    /// A part of the light that is sampled independently of the surface, and its density.
-    fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
-        match &self.system.light {
-            Light::Area { shape, .. } => {
-                let part = LightPart::Point(crate::path::rays::point_of(shape, at));
-                Some((part, 1.0 / shape.area()))
-            }
-            Light::Environment { environment } => {
-                let from = self.sky.as_ref()?.draw(at);
-                self.of_sky(-environment.frame.vector_to_world(from), from)
-            }
-            Light::Point { .. }
-            | Light::Projector { .. }
-            | Light::Beam { .. }
-            | Light::Rays { .. } => None,
-        }
-    }
-
-    /// The part of an environment from which light travels along `along`, and its density;
-    /// `from` is the direction from which this light comes, in the axes of the map.
-    fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
-        let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
-        else {
-            return None;
-        };
-        let slopes = forward(along)?;
-        let radiance = environment.map.radiance(from);
-        let density = sky.density(from, radiance);
-        Some((LightPart::Sky { slopes, radiance }, density))
-    }
-
-    /// The part of the light that is seen in a direction `wi` from the surface. Also
-    /// returns the density of this part if parts are sampled independently of the surface.
-    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
-        match &self.system.light {
-            Light::Area { shape, .. } => {
-                let [u, v] = forward(-wi)?;
-                let DVec3 { x, y, z } = leaving.point;
-                let [a, b] = [x - z * u, y - z * v];
-                let meets = shape.contains(a, b);
-                meets.then(|| (LightPart::Point([a, b]), 1.0 / shape.area()))
-            }
-            Light::Environment { environment } => self.of_sky(-wi, environment.origin_of(-wi)),
-            Light::Point { .. }
-            | Light::Projector { .. }
-            | Light::Beam { .. }
-            | Light::Rays { .. } => None,
-        }
     }
 
     /// The direction towards a part of the light, a unit vector away from the surface.
@@ -319,20 +267,6 @@ impl<'a> Lights<'a> {
             LightPart::Sky { .. } | LightPart::Whole => 1.0,
         }
     }
-}
-
-/// The density of the directions of a system's environment, for a surface with this normal.
-pub(super) fn sky_density(system: &PathSystem, normal: DVec3) -> Option<Arc<SkyDensity<'_>>> {
-    match &system.light {
-        Light::Environment { environment } => SkyDensity::new(environment, normal).map(Arc::new),
-        _ => None,
-    }
-}
-
-/// The slopes of light along a direction, or `None` if the direction does not point
-/// towards positive z.
-fn forward(along: DVec3) -> Option<[f64; 2]> {
-    (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
 }
 
 /// Samples incident directions for a given outgoing direction, by sampling normals of microfacets

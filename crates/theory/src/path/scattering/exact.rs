@@ -1,7 +1,8 @@
 //! The exact radiance of a ray at a plane.
 
 use super::brdf;
-use super::incoming::{IncomingLight, LightPart, secant};
+use super::incoming::{IncomingLight, secant};
+use crate::light::LightPart;
 use crate::obstacle::LegRay;
 use crate::path::{AtMask, PathSystem, PreparedPath};
 use crate::plane::Plane;

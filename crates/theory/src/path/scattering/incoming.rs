@@ -1,26 +1,9 @@
 //! The light that is incident on a point of a surface from one part of a light.
 
+use crate::light::{LightPart, emitted};
 use crate::obstacle::LegRay;
 use crate::path::PreparedPath;
-use crate::path::rays::emitted;
 use glam::DVec3;
-
-/// A sampled part of the light.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum LightPart {
-    /// The complete light, if its light arrives at a point of the surface from a single direction.
-    Whole,
-    /// A point of an area light. Densities of points on an area light are per square metre.
-    Point([f64; 2]),
-    /// A direction of an environment and its radiance. The direction is given by the slopes of the
-    /// rays that come from it. Densities of directions of an environment are per steradian.
-    Sky {
-        /// Slopes of rays from the environment, in the direction of light.
-        slopes: [f64; 2],
-        /// Radiance of the environment in this direction, W m⁻² sr⁻¹.
-        radiance: f64,
-    },
-}
 
 /// Light that arrives with slopes (u, v).
 #[derive(Clone, Copy, Debug)]

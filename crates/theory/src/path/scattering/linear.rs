@@ -1,8 +1,9 @@
 //! The radiance of a ray at a plane in the first-order chain.
 
-use super::incoming::{IncomingLight, LightPart};
+use super::incoming::IncomingLight;
 use super::{back, brdf};
 use crate::geometry::{AffineMap, Matrix};
+use crate::light::LightPart;
 use crate::obstacle::LegRay;
 use crate::path::{PathChain, PathSystem, PreparedPath, ScatteringSurface};
 use etendue_field::{Brdf, Frame, Lobe, Reflectance};

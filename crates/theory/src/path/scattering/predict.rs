@@ -1,16 +1,16 @@
 //! Predicts the slices of scattered light by sums over scrambled nets of rays.
 
-use super::draw::{LightStrategy, Lights, PlaneRaySampler, sky_density};
+use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
-use super::incoming::LightPart;
 use super::linear::Linear;
+use crate::light::{LightPart, LightParts};
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::obstacle::LegRay;
 use crate::path::differences::{Differences, DrawnField};
 use crate::path::{AtMask, Observed, PathChain, PathSystem, PreparedPath};
 use crate::predicted::Predicted;
-use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
+use etendue_field::{EnvironmentMap, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
 /// The windowed spectrum of the light that a surface scatters, and its derivatives with
@@ -93,12 +93,13 @@ pub fn compare_chain(
 /// The computing time of a ray, relative to a ray in an environment of few lobes.
 fn cost(system: &PathSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
-    match &system.light {
-        Light::Environment { environment } => match &environment.map {
-            EnvironmentMap::Lobes(lobes) => 1.0 + lobes.len() as f64 / FEW_LOBES,
-            EnvironmentMap::LatLong(_) => 1.0,
-        },
-        _ => 1.0,
+    match system
+        .light
+        .environment()
+        .map(|environment| &environment.map)
+    {
+        Some(EnvironmentMap::Lobes(lobes)) => 1.0 + lobes.len() as f64 / FEW_LOBES,
+        Some(EnvironmentMap::LatLong(_)) | None => 1.0,
     }
 }
 
@@ -146,7 +147,7 @@ impl<'a> ScatteredField<'a> {
             window,
             path: PreparedPath::new(system),
             rays: PlaneRaySampler::new(system, window, chain, strategy),
-            lights: Lights::new(system, sky_density(system, normal), strategy),
+            lights: Lights::new(system, LightParts::new(&system.light, normal), strategy),
             linear: chain.and_then(|chain| Linear::new(system, chain)),
         }
     }

@@ -4,7 +4,8 @@ mod points;
 mod spectra;
 
 use super::{Receiver, SlopeProjection};
-use crate::parallel::chain::{MaskLayer, ParallelEmitter};
+use crate::light::closed_form;
+use crate::parallel::chain::MaskLayer;
 use crate::testing::{aperture, disc, opaque, square};
 use etendue_field::{Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
@@ -70,7 +71,7 @@ impl TestReceiver {
     /// Builds the receiver. Its reflected light is observed at the distance `after`.
     fn after(&self, after: f64) -> Receiver<'_> {
         Receiver::new(
-            ParallelEmitter::new(&self.light),
+            closed_form(&self.light).unwrap(),
             &self.layers(),
             self.distance,
             true,

@@ -149,7 +149,7 @@ fn two_discs_meet_in_a_lens() {
             mask: &mask,
         }];
         let stopped = |layers: &[MaskLayer<'_>]| {
-            Receiver::new(ParallelEmitter::new(&light), layers, 2.0, false, 0.0, 1.0)
+            Receiver::new(closed_form(&light).unwrap(), layers, 2.0, false, 0.0, 1.0)
                 .irradiance(0.0, 0.0)
                 / 1.7
         };

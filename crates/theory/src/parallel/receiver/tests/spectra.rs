@@ -128,7 +128,7 @@ fn planted_faults_are_seen() {
         let distance = bench.distance;
         deviation(
             &Receiver::new(
-                ParallelEmitter::new(&bench.light),
+                closed_form(&bench.light).unwrap(),
                 &layers,
                 distance,
                 cosine,

@@ -3,6 +3,7 @@
 use super::super::draw::{RaySampler, RayStrategy};
 use super::super::region::neighbourhood;
 use super::*;
+use crate::light::emitted;
 use crate::nets::{DIMENSIONS, NetPoints};
 use crate::testing::mask_at;
 use etendue_field::{

@@ -3,6 +3,7 @@
 use super::*;
 use crate::RayBudget;
 use crate::geometry::AffineMap;
+use crate::light::LightParts;
 use crate::path::{Interaction, PathChain, PathSurface, PathSystem, PreparedPath, chain};
 use crate::testing::{chain_of, mask_at, opaque, window};
 use crate::{Model, Observed, Operator, Parameter, Plane, Predicted, slices};
@@ -458,8 +459,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let path = PreparedPath::new(&system);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
-            let sky = draw::sky_density(&system, leaving.normal);
-            let lights = draw::Lights::new(&system, sky, draw::LightStrategy::default());
+            let parts = LightParts::new(&system.light, leaving.normal);
+            let lights = draw::Lights::new(&system, parts, draw::LightStrategy::default());
             let mut net = crate::nets::NetPoints::new(1, 6);
             let count = 1 << 18;
             let points = (0..count).filter_map(|_| {
