@@ -1,7 +1,6 @@
 //! What theory knows about each kind of light: the flux along a ray, random parts of the light, its
 //! closed form between parallel planes, and its description.
 
-use crate::parallel::ParallelEmitter;
 use crate::sky::SkyDensity;
 use crate::words::formula;
 use etendue_field::{Disc, EmittedRays, Environment, Image, Light, Rectangle, Shape, tidy};
@@ -34,6 +33,18 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
         }
         Light::Rays { .. } => panic!("rays of a file are summed, not drawn"),
     }
+}
+
+/// A light whose field has closed forms between parallel planes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ParallelEmitter {
+    /// The shape of the light; `None` for a point on the central ray.
+    pub(crate) shape: Option<Shape>,
+    /// Radiance or intensity along the central ray.
+    pub(crate) brightness: f64,
+    /// The power p of the factor (1 + u² + v²)^p on radiance. For a spot's cosⁿθ, p = −n/2. For a
+    /// point light, p = ½, because the distance from the light to (x, y) is D √(1 + u² + v²).
+    pub(crate) power: f64,
 }
 
 /// The light as a factor of closed forms between parallel planes, or the reason why it has no closed

@@ -1,6 +1,6 @@
 //! Chains: a light and the operators on its light field along the path.
 
-use crate::light::closed_form;
+use crate::light::{ParallelEmitter, closed_form};
 use crate::parameter::shapes_of;
 use etendue_field::{Hole, Light, Mask, Shape};
 
@@ -86,18 +86,6 @@ pub(crate) struct DiffuseReflection {
     pub(crate) albedo: f64,
     /// Distance that the light travels after the reflection, in metres.
     pub(crate) after: f64,
-}
-
-/// A light whose field has closed forms between parallel planes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ParallelEmitter {
-    /// The shape of the light; `None` for a point on the central ray.
-    pub(crate) shape: Option<Shape>,
-    /// Radiance or intensity along the central ray.
-    pub(crate) brightness: f64,
-    /// The power p of the factor (1 + u² + v²)^p on radiance. For a spot's cosⁿθ, p = −n/2. For a
-    /// point light, p = ½, because the distance from the light to (x, y) is D √(1 + u² + v²).
-    pub(crate) power: f64,
 }
 
 /// The part of a chain up to its diffuse surface. If the chain has no diffuse surface, the segment

@@ -50,5 +50,3 @@ pub use harmonics::Harmonics;
 pub use projection::projection;
 pub use slices::slices;
 use work::work;
-
-pub(crate) use chain::ParallelEmitter;

@@ -18,7 +18,8 @@ mod tests;
 mod work;
 
 use crate::barrier::Barrier;
-use crate::parallel::chain::{ChainSegment, MaskLayer, ParallelEmitter};
+use crate::light::ParallelEmitter;
+use crate::parallel::chain::{ChainSegment, MaskLayer};
 use density::{Integrator, ReceiverDensity};
 use etendue_field::Rectangle;
 use region::ReceiverRegion;
