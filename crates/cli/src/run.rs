@@ -139,7 +139,9 @@ fn twin(args: &RunArgs, run: &Run) -> Result<Option<Run>, Failure> {
     }
     let settings = &run.scene.file.run;
     let source = SceneSource::file(path, &[]);
-    Run::read(&source, run.method, |run| *run = settings.clone()).map(Some)
+    let other = Run::read(&source, run.method, |run| *run = settings.clone())?;
+    other.check_limits()?;
+    Ok(Some(other))
 }
 
 /// Prints warnings, and fails if the run is too large or its folder has the result of another

@@ -47,8 +47,11 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
 fn is_shared(command: &Command) -> bool {
     match command {
         Command::Run(RunArgs {
-            target_error, rgb, ..
-        }) => target_error.is_none() && !rgb,
+            target_error,
+            rgb,
+            against,
+            ..
+        }) => target_error.is_none() && !rgb && against.is_none(),
         command => matches!(command, Command::Predict(_) | Command::Sweep(_)),
     }
 }

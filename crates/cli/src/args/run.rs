@@ -234,9 +234,9 @@ Results with the same seed share photons. If both have batches (run --save batch
 are subtracted in pairs, so that most of their noise cancels; this shows what changed, not whether theory \
 is right. Without batches, they are either identical or undecided.
 
-For results with other seeds or methods, the test makes two assumptions. Each result is a mean of many independent batches, so that its noise is \
-normal. Noise is correlated between frequencies in the same way in both results. If an assumption does not \
-hold, p is too large, not too small.
+For results with other seeds or methods, the test makes two assumptions. Each result is a mean of many \
+independent batches, so that its noise is normal. Noise is correlated between frequencies in the same way \
+in both results. If an assumption does not hold, p is too large, not too small.
 
 Exit codes: 0 equal except for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {

@@ -104,7 +104,7 @@ impl SweepPoints {
         })
     }
 
-    /// Runs a point; returns its files as bytes, for this or another process ([`files`]).
+    /// Runs a point; returns its files as bytes, for this or another process.
     pub fn run(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
