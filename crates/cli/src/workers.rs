@@ -24,7 +24,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         }
     };
     if !is_shared(&command) {
-        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error and --rgb";
+        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error, --rgb and --against";
         return ended(Err(Failure::bad_input(message)), !leads);
     }
     if !leads {

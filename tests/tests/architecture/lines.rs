@@ -13,7 +13,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4411,
+        4416,
         "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`",
     ),
     (
