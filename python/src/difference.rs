@@ -60,9 +60,7 @@ pub(crate) fn two_samples(
                 let what = format!("batches must have the shape {half:?}");
                 return Err(PyValueError::new_err(what));
             }
-            let batches = of_a.outer_iter().zip(of_b.outer_iter());
-            let differences = batches.map(|(a, b)| &b - &a).collect();
-            let differences = Residuals::of(grid, differences);
+            let differences = Residuals::of_pairs(grid, of_a.outer_iter(), of_b.outer_iter());
             TwoSamples::paired(&grid, [&a, &b], &differences, seed)
         }
     };

@@ -228,10 +228,10 @@ impl ChangedPair {
         };
         let [a, b] = self.scenes.each_ref().map(seeded);
         let [of_a, of_b] = paired([&a, &b]);
-        let batches = of_a.at_plane(0).zip(of_b.at_plane(0));
-        let differences = batches.map(|(a, b)| &b.slices.half - &a.slices.half);
         let grid = a.planes[0].grid;
-        let differences = Residuals::of(grid, differences.collect());
+        let [batches_of_a, batches_of_b] =
+            [&of_a, &of_b].map(|of| of.at_plane(0).map(|batch| batch.slices.half.view()));
+        let differences = Residuals::of_pairs(grid, batches_of_a, batches_of_b);
         let [known, prediction] = self.predictions.each_ref().map(|of| &of.slices);
         let expected = &prediction.half - &known.half;
         let rest = differences.without(&expected);

@@ -88,6 +88,24 @@ impl Prediction {
         )
     }
 
+    /// Adds the errors of `known` to this prediction, which is then tested against the slices of
+    /// `known` plus a measured difference.
+    pub fn add_errors_of(&mut self, known: &Self) {
+        let size = known.slices.norm() / self.slices.norm().max(f64::MIN_POSITIVE);
+        let error = known.error().map(|error| error * size);
+        let [own, others] = [&self.replicates, &known.replicates].map(Vec::len);
+        if others > 0 {
+            let count = if own > 0 { own.min(others) } else { others };
+            let replicate = |i: usize| {
+                let mut of = self.replicates.get(i).unwrap_or(&self.slices).clone();
+                of.half += &(&known.slices.half - &known.replicates[i].half);
+                of
+            };
+            self.replicates = (0..count).map(replicate).collect();
+        }
+        self.quadrature_error = both(self.quadrature_error, error);
+    }
+
     /// A plane of a measurement in the form of a prediction. Another, independent
     /// measurement is compared with it.
     ///

@@ -3,7 +3,7 @@
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
 use etendue_transform::random::{self, Stream};
-use ndarray::{Array, Array2, Array3, Axis, Dimension};
+use ndarray::{Array, Array2, Array3, ArrayView3, Axis, Dimension};
 
 /// Measured minus predicted slices, in independent parts.
 ///
@@ -44,6 +44,18 @@ impl Residuals {
     #[must_use]
     pub fn of(grid: SliceGrid, parts: Vec<Array3<Complex>>) -> Self {
         Self { grid, parts }
+    }
+
+    /// The differences B_b − A_b of the batches of two measurements that use the same random numbers,
+    /// each [azimuth, ρ ≥ 0, ν].
+    #[must_use]
+    pub fn of_pairs<'a>(
+        grid: SliceGrid,
+        a: impl IntoIterator<Item = ArrayView3<'a, Complex>>,
+        b: impl IntoIterator<Item = ArrayView3<'a, Complex>>,
+    ) -> Self {
+        let pairs = a.into_iter().zip(b);
+        Self::of(grid, pairs.map(|(a, b)| &b - &a).collect())
     }
 
     /// The differences between plane `plane` of a measurement and slices without

@@ -93,7 +93,7 @@ impl TwoSamples {
         }
     }
 
-    /// Tests whether two samples have the same true slices, from the differences A_b − B_b of their
+    /// Tests whether two samples have the same true slices, from the differences B_b − A_b of their
     /// batches.
     ///
     /// Batches that use the same random numbers have nearly the same noise, which cancels in their

@@ -37,7 +37,7 @@ impl Run {
         let measurement = own.difference_from(&of_other, &expected);
         let mut predictions = self.predictions(None, reporter)?;
         for (prediction, known) in predictions.iter_mut().zip(&known) {
-            add_error(prediction, known);
+            prediction.add_errors_of(known);
             let name = &other.scene.name;
             let step = format!(
                 "measured as  the prediction of {name}, plus photons of both scenes in pairs"
@@ -79,28 +79,4 @@ impl Run {
         }
         Ok(())
     }
-}
-
-/// Adds the errors of the known slices to a prediction, which is then tested against the known
-/// slices plus a difference.
-fn add_error(prediction: &mut Prediction, known: &Prediction) {
-    let [own, others] = [&prediction.replicates, &known.replicates].map(Vec::len);
-    let size = known.slices.norm() / prediction.slices.norm().max(f64::MIN_POSITIVE);
-    let error = known.error().map(|error| error * size);
-    if others > 0 {
-        let count = if own > 0 { own.min(others) } else { others };
-        let replicate = |i: usize| {
-            let mut of = prediction
-                .replicates
-                .get(i)
-                .unwrap_or(&prediction.slices)
-                .clone();
-            of.half += &(&known.slices.half - &known.replicates[i].half);
-            of
-        };
-        let replicates = (0..count).map(replicate).collect();
-        prediction.replicates = replicates;
-    }
-    let both = prediction.quadrature_error.into_iter().chain(error);
-    prediction.quadrature_error = both.reduce(|a, b| (a * a + b * b).sqrt());
 }

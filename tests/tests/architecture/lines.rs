@@ -19,7 +19,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "compare",
         2927,
-        3115,
+        3145,
         "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs",
     ),
     (
@@ -64,7 +64,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "report",
         2599,
-        4567,
+        4573,
         "tables, texts, times of stages and `diff` came from pipeline; `diff` says when nothing is named; `diff` compares pairs, and measurements",
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),

@@ -4,12 +4,11 @@
 //! scenes, so most of the noise cancels in the difference of two batches. The differences of all
 //! batches are independent of each other.
 
-use super::radial::RadialDiff;
-use super::stored::{StoredBatches, StoredResult, StoredSlices};
+use super::stored::{StoredResult, StoredSlices};
 use etendue_compare::{
     Estimate, MIN_DIFFERING, PredictedParameter, Residuals, TwoSamples, pull, score,
 };
-use etendue_field::{Complex, Orientation, Slices};
+use etendue_field::{Complex, Slices};
 use etendue_store::Failure;
 
 /// What a test in pairs finds at one plane, in addition to its [`TwoSamples`].
@@ -44,7 +43,7 @@ pub(super) struct ParameterDiff {
 pub(super) struct Pairs<'a> {
     slices: [&'a StoredSlices; 2],
     /// B_b − A_b of each batch.
-    differences: Residuals,
+    pub(super) differences: Residuals,
     seed: u64,
 }
 
@@ -74,18 +73,21 @@ pub(super) fn unpaired(a: &StoredResult, b: &StoredResult) -> Option<String> {
 }
 
 impl<'a> Pairs<'a> {
-    pub(super) fn new(
+    /// Reads the batches of both results at a plane.
+    pub(super) fn read(
+        results: [&StoredResult; 2],
+        plane: &str,
         slices: [&'a StoredSlices; 2],
-        [a, b]: [&StoredBatches; 2],
-        seed: u64,
-    ) -> Self {
-        let pairs = a.slices.iter().zip(&b.slices);
-        let differences = pairs.map(|(a, b)| b - a).collect();
-        Self {
-            differences: Residuals::of(slices[0].grid, differences),
+    ) -> Result<Self, Failure> {
+        let grid = slices[0].grid;
+        let [a, b] = results.map(|result| result.batches(plane, &grid));
+        let (a, b) = (a?, b?);
+        let [of_a, of_b] = [&a, &b].map(|of| of.slices.iter().map(|one| one.view()));
+        Ok(Self {
+            differences: Residuals::of_pairs(grid, of_a, of_b),
             slices,
-            seed,
-        }
+            seed: results[0].index.seed,
+        })
     }
 
     /// States that too few batches differ to give an error, if that is so.
@@ -94,10 +96,6 @@ impl<'a> Pairs<'a> {
         (1..MIN_DIFFERING).contains(&count).then(|| {
             format!("only {count} of {all} batches differ, too few to give errors of changes: more photons are needed")
         })
-    }
-
-    pub(super) fn radial(&self, orientation: Orientation) -> RadialDiff {
-        RadialDiff::new(self.slices, Some(&self.differences), orientation)
     }
 
     pub(super) fn test(&self) -> (TwoSamples, PairedNumbers) {

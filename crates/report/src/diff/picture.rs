@@ -1,7 +1,9 @@
 //! Draws the difference of two results at one plane.
 
 use super::difference::Diff;
-use super::planes::{Compared, PlaneDiff};
+use super::pairs::Pairs;
+use super::planes::{Compared, PlaneDiff, view};
+use super::radial::RadialDiff;
 use crate::pictures::{DECIBEL, image, power_axes, spectrum_quantity};
 use crate::table::spaced;
 use etendue_field::percent;
@@ -21,7 +23,7 @@ impl Diff {
         let (name, plane) = compared
             .max_by(|a, b| size(a).total_cmp(&size(b)))
             .ok_or_else(|| Failure::bad_input("no plane is compared, so none can be drawn"))?;
-        let radial = &plane.radial;
+        let radial = self.radial(name)?;
         let [x, y] = power_axes(radial.orientation, &radial.grid);
         let [of_a, of_b] = &radial.powers;
         let test = &plane.test;
@@ -45,5 +47,21 @@ impl Diff {
             finer: None,
         });
         image(&figure.map_err(Failure::cannot_run)?, path)
+    }
+
+    /// Reads a plane once more: other planes need no radial power.
+    fn radial(&self, name: &str) -> Result<RadialDiff, Failure> {
+        let results = self.results.each_ref();
+        let missing = || Failure::bad_input(format!("plane {name} is not in both results"));
+        let slices = results.map(|result| result.slices(result.plane(name).ok_or_else(missing)?));
+        let [a, b] = slices;
+        let slices = [&a?, &b?];
+        let is_paired = self.unpaired.is_none();
+        let pairs = is_paired.then(|| Pairs::read(results, name, slices));
+        let pairs = pairs.transpose()?;
+        let orientation = &view(&results[0].index.scene_file, name)["orientation"];
+        let orientation = serde_json::from_value(orientation.clone()).unwrap_or_default();
+        let differences = pairs.as_ref().map(|pairs| &pairs.differences);
+        Ok(RadialDiff::new(slices, differences, orientation))
     }
 }

@@ -1,7 +1,6 @@
 //! Tests one plane of two results, and describes the outcome.
 
 use super::pairs::{PairedNumbers, Pairs, ParameterDiff};
-use super::radial::RadialDiff;
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
@@ -41,8 +40,6 @@ pub(super) struct Compared {
     /// Numbers of the test in pairs; `None` if the results have independent noise.
     pub(super) pairs: Option<PairedNumbers>,
     pub(super) parameters: Vec<ParameterDiff>,
-    /// The radial power of both results, for a picture.
-    pub(super) radial: RadialDiff,
     pub(super) slopes: [Option<Estimate>; 2],
     /// The difference of the predictions; `None` if a result has no prediction.
     pub(super) prediction: Option<PredictionDiff>,
@@ -195,26 +192,20 @@ impl ResultPair<'_> {
         if let Some(why) = self.unlike(&of_a.name, &a, &b) {
             return Ok(PlaneDifference::Unlike(why));
         }
-        let orientation = &view(&self.a.index.scene_file, &of_a.name)["orientation"];
-        let orientation = serde_json::from_value(orientation.clone()).unwrap_or_default();
-        let (test, pairs, parameters, radial) = if self.is_paired {
-            let batches = |result: &StoredResult| result.batches(&of_a.name, &a.grid);
-            let batches = [&batches(self.a)?, &batches(self.b)?];
-            let pairs = Pairs::new([&a, &b], batches, self.a.index.seed);
+        let (test, pairs, parameters) = if self.is_paired {
+            let pairs = Pairs::read([self.a, self.b], &of_a.name, [&a, &b])?;
             let parameters = pairs.parameters(&self.a.parameters(&of_a.name, &a)?);
             let (test, numbers) = pairs.test();
-            (test, Some(numbers), parameters, pairs.radial(orientation))
+            (test, Some(numbers), parameters)
         } else {
             let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
-            let radial = RadialDiff::new([&a, &b], None, orientation);
-            (test, None, self.parameters(of_a, of_b), radial)
+            (test, None, self.parameters(of_a, of_b))
         };
         let few = pairs.as_ref().and_then(|pairs| pairs.few.clone());
         let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
         let compared = Compared {
             parameters,
             pairs,
-            radial,
             slopes: [
                 of_a.slope.estimate(self.a.index.batches.len()),
                 of_b.slope.estimate(self.b.index.batches.len()),
@@ -379,7 +370,7 @@ fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
 }
 
 /// The definition of a plane's slices: its window, quantity and coordinates.
-fn view(scene_file: &Value, name: &str) -> Value {
+pub(super) fn view(scene_file: &Value, name: &str) -> Value {
     let planes = scene_file["planes"].as_array();
     let mut planes = planes.into_iter().flatten();
     let plane = planes.find(|plane| plane["name"] == name);

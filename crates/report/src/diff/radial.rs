@@ -3,6 +3,7 @@
 use super::stored::StoredSlices;
 use etendue_compare::Residuals;
 use etendue_field::{Orientation, SliceGrid, Slices};
+use etendue_store::arrays::z;
 use ndarray::{Array2, Array3, Axis};
 
 /// The radial power of two results, [ρ, ν], and their difference.
@@ -42,13 +43,11 @@ impl RadialDiff {
             },
         );
         let powers = [0, 1].map(|i| mean(&(&power[i] - &noise[i])));
-        let mut z = &powers[1] - &powers[0];
-        z.zip_mut_with(&sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
         Self {
             grid,
             orientation,
+            z: z(&powers[1], &powers[0], &sigma),
             powers,
-            z,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Reads result folders for `diff`: every file is verified, and its content is not trusted.
 
-use etendue_compare::{Estimate, Residuals, Sample};
+use etendue_compare::{Class, Estimate, Residuals, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use etendue_scene::{Color, read_below};
 use etendue_store::npz::NpzFile;
@@ -113,7 +113,7 @@ pub(super) struct StoredParameter {
 impl StoredPlane {
     /// Checks whether the prediction has no error of its own.
     fn is_closed_form(&self) -> bool {
-        self.quadrature_error.is_none() && self.class == "exact"
+        self.quadrature_error.is_none() && self.class == Class::Exact.to_string()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Arithmetic along a row of frequencies.
 
 use etendue_field::{Complex, SliceGrid, Slices, cis};
+use ndarray::Axis;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -105,10 +106,10 @@ pub(crate) fn several_by_rows(
         })
         .collect();
     let mut all = vec![Slices::zeros(*grid); count];
-    for (i, rows) in values.into_iter().enumerate() {
-        for (slices, from) in all.iter_mut().zip(rows) {
-            let mut to = slices.half.rows_mut().into_iter().skip(i);
-            let to = to.next().expect("a row of the grid");
+    for (i, each) in values.into_iter().enumerate() {
+        for (slices, from) in all.iter_mut().zip(each) {
+            let to = slices.half.index_axis_mut(Axis(0), i / rows);
+            let to = to.index_axis_move(Axis(0), i % rows);
             to.into_iter().zip(from).for_each(|(to, from)| *to = from);
         }
     }

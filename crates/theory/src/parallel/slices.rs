@@ -65,17 +65,13 @@ pub(crate) fn several(
     let summed = |(path, expansion)| Summed::new(path, expansion, &expansions[0]);
     let all: Vec<Summed<'_>> = paths.iter().zip(&expansions).map(summed).collect();
     several_by_rows(grid, all.len(), |along, rho| {
-        let factors_of = |product: &Product<'_>| {
-            [0, 1].map(|axis| product.factors(axis, rho, along[axis], grid))
-        };
-        let first: Vec<_> = all[0].products.iter().map(factors_of).collect();
-        let row = |one: &Summed<'_>| {
-            one.row(
-                &first,
-                |product, axis| product.factors(axis, rho, along[axis], grid),
-                grid.nu.count(),
-            )
-        };
+        let factors =
+            |product: &Product<'_>, axis: usize| product.factors(axis, rho, along[axis], grid);
+        let of_first = all[0].products.iter();
+        let first: Vec<_> = of_first
+            .map(|product| [0, 1].map(|axis| factors(product, axis)))
+            .collect();
+        let row = |one: &Summed<'_>| one.row(&first, factors, grid.nu.count());
         all.iter().map(row).collect()
     })
 }
