@@ -19,6 +19,7 @@ from etendue import operators
 from etendue._etendue import CannotRun, SceneError
 from etendue.commands import figure, sweep
 from etendue.difference import Difference, difference
+from etendue.fit import Fit, FittedField, fit
 from etendue.grids import GridSpectrum, grid_spectrum
 from etendue.images import TwoSample, two_sample
 from etendue.phase_space import MTF, PhaseSpace, mtf, phase_space
@@ -36,6 +37,8 @@ __all__ = [
     "CannotRun",
     "ChiSquare",
     "Difference",
+    "Fit",
+    "FittedField",
     "Furnace",
     "GridSpectrum",
     "ImportedScene",
@@ -67,6 +70,7 @@ __all__ = [
     "compare",
     "difference",
     "figure",
+    "fit",
     "furnace",
     "grid_spectrum",
     "import_scene",

@@ -88,6 +88,17 @@ def sweep(
     threads: int | None,
     progress: Tell | None,
 ) -> None: ...
+def fit(
+    scene: SceneArgument,
+    set: list[tuple[str, str]],
+    to: Measurement | list[str],
+    free: list[str],
+    ranges: list[tuple[str, tuple[float, float]]],
+    starts: int,
+    planes: list[str],
+    threads: int | None,
+    progress: Tell | None,
+) -> str: ...
 def figure(
     scenes: list[SceneArgument],
     set: list[tuple[str, str]],

@@ -7,6 +7,7 @@ mod arguments;
 mod arrays;
 mod difference;
 mod figure;
+mod fit;
 mod import;
 mod live;
 mod outcome;
@@ -29,6 +30,8 @@ mod _etendue {
     use crate::difference::two_samples;
     #[pymodule_export]
     use crate::figure::figure;
+    #[pymodule_export]
+    use crate::fit::fit;
     #[pymodule_export]
     use crate::import::import_scene;
     #[pymodule_export]

@@ -1,5 +1,6 @@
 """Light fields by Mitsuba's integrators, against Étendue's photons. Needs Mitsuba 3 and LLVM; without them, these tests are skipped."""
 
+import re
 from pathlib import Path
 
 import etendue
@@ -139,6 +140,20 @@ def test_notebooks_of_theories(name):
     assert len(lines) > 4
     for line in lines:
         assert line.endswith("fail" if "planted" in line else "pass"), said
+
+
+def test_the_notebook_of_inverse_rendering():
+    """All scenes are found, and no roughness of a wrong lobe explains the light."""
+    nbclient = pytest.importorskip("nbclient")
+    import nbformat
+
+    notebook = nbformat.read(Path(__file__).parents[2] / "docs" / "inverse.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=600).execute()
+    said = "".join(output.get("text", "") for cell in notebook.cells for output in cell.get("outputs", []))
+    right, wrong = said.split("surfaces.0.event.brdf.lobe.Ggx")
+    off = [float(number) for number in re.findall(r"\(([-+.0-9]+) σ\)", right + wrong.partition("fail")[2])]
+    assert len(off) == 10 and max(map(abs, off)) < 4, said
+    assert said.count("pass, p") == 4 and said.count("fail, p") == 1 and "fail" in wrong
 
 
 @pytest.mark.parametrize("integrator", ["prb", "direct_projective"])

@@ -270,6 +270,28 @@ def test_pairs_show_changes_below_the_noise(result):
     assert same.difference == same.noise == 0 and same.p_value is None
 
 
+def test_a_fit_finds_fields_of_the_scene():
+    """A measurement, the same in a file, and photons of a renderer, whose planes are told by name or stand alone."""
+    free = ["surfaces.0.center.2", "blockers.0.fill"]
+    scene = etendue.Scene(FIG9B, photons=2**16, set={"planes": '[(name: "receiver", at: Before("floor"))]'})
+    found = etendue.fit(scene, etendue.measure(scene), free, set={free[0]: 2.2})
+    for field, true in zip(free, (2.0, 0.6)):
+        # Four errors, since the seed is fixed.
+        assert abs(found[field].value - true) < 4 * found[field].error
+        assert found[field].bound < found[field].error
+    assert found.verdict == "pass" and found[free[0]].start == 2.2 and found.correlations.shape == (2, 2)
+    light = etendue.photons(scene, "receiver")
+    x, y, u, v, weight = light.rays.T
+    own = {"window": scene.file["window"], "frequencies": scene.file["frequencies"], "batch": light.batch}
+    rays = etendue.spectrum(x, y, u, v, weight / 2**16, **own)
+    of_rays = etendue.fit(scene, rays, free, set={free[0]: 2.2})
+    assert of_rays[free[0]].value == pytest.approx(found[free[0]].value, abs=found[free[0]].error)
+    with pytest.raises(etendue.SceneError, match="free=blockers.0.hight"):
+        etendue.fit(scene, rays, ["blockers.0.hight"])
+    with pytest.raises(TypeError, match="sequence of paths"):
+        etendue.fit(scene, rays, "blockers.0.fill")
+
+
 def test_two_measurements_differ_by_noise_alone(result):
     """Photons of another seed agree, and rays of the user's too; light that is a fifth too bright does not."""
     scene = etendue.Scene(FIG9B, photons=2**18, seed=2, set={"blockers.0.pitch": 0.1})

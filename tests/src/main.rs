@@ -18,6 +18,7 @@ mod bandwidth;
 mod calibration;
 mod claims;
 mod faults;
+mod fits;
 mod full_radial;
 mod hostile;
 mod kills;
@@ -68,6 +69,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- small        20 minutes; small objects in the light of 2,000 random scenes
   cargo run --release -p etendue-validation -- assumptions  minutes; random scenes with the checks of theory switched off
   cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
+  cargo run --release -p etendue-validation -- fits         errors of fits over many seeds; writes results/fits.md
   cargo run --release -p etendue-validation -- transform    errors of the slice transform over 20 random scenes
   cargo run --release -p etendue-validation -- rows         an hour; table1, shading and every row of Table 1
   cargo run --release -p etendue-validation -- all          two hours; writes the whole of results/validation.md")]
@@ -178,6 +180,9 @@ enum ValidationCommand {
     /// Measure scenes by their difference from another scene with the same photons; exit code 1 if
     /// stated errors are wrong.
     Pairs(pairs::PairOptions),
+    /// Measure errors, p and bounds of fits over many seeds, far starts, degenerate scenes and wrong
+    /// models; write results/fits.md.
+    Fits(fits::FitOptions),
     /// Compare the slice transform with plain sums over random scenes; exit code 1 if its error is
     /// larger than stated.
     Transform(transform::TransformOptions),
@@ -341,6 +346,12 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
             "full-radial",
             "The scenes have fewer frequencies than in their files",
         ),
+        ValidationCommand::Fits(_) => Some([
+            "results/fits.md",
+            "Fits",
+            "fits",
+            "The scenes are in `tests/src/fits.rs`",
+        ]),
         ValidationCommand::Rows => part(
             "Every row of Table 1",
             "rows",
@@ -396,6 +407,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             full_radial::full_radial(seeds, photons)
         }
         ValidationCommand::Noise { most } => noise(most),
+        ValidationCommand::Fits(options) => fits::sections(options),
         ValidationCommand::Main => {
             let mut sections = noise(1 << 30);
             sections.extend(calibrations(1..1001, 100_000));

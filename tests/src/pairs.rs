@@ -34,6 +34,7 @@ const CHANGES: [ChangedScene; 6] = [
         "fig9b",
         "receiver",
         &[
+            ("blockers.0.fill", "0.600006"),
             ("blockers.0.fill", "0.60006"),
             ("blockers.0.fill", "0.6006"),
             ("blockers.0.fill", "0.606"),
@@ -96,6 +97,9 @@ const LEAST_GAIN: f64 = 1.2;
 /// prediction is compared with them. An error of this size adds a hundredth to χ².
 const UNSEEN: f64 = 0.1;
 
+/// The level at which a change is seen.
+const LEVEL: f64 = 0.01;
+
 /// The change of one field of a scene that has one plane.
 struct ChangedPair {
     scenes: [Scene; 2],
@@ -108,6 +112,8 @@ struct PairStatistics {
     /// The noise of independent photons over the noise of pairs.
     gain: f64,
     p_value: Option<f64>,
+    /// p of no change.
+    p_nothing: Option<f64>,
     /// p with a predicted difference that is 10 % too large.
     p_planted: Option<f64>,
     chi2_per_dof: Option<f64>,
@@ -171,14 +177,16 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
         .because(four),
     ];
     let pull = format!("{average:.3} ± {error:.3}, square {square:.3} ± {error_of_square:.3}");
-    let cells = ["all", "", "", "", "", &pull, &format!("{uniform:.3}")];
+    let cells = ["all", "", "", "", "", "", &pull, &format!("{uniform:.3}")];
     rows.push(Row::new(cells.map(str::to_owned).to_vec(), checks));
     let text = format!(
         "Two scenes are traced with the same photons, {} each, {}, with {} seeds. *Gain* is the \
-         noise of the difference of independent runs over the noise of pairs. *Measured over \
+         noise of the difference of independent runs over the noise of pairs. *Seen* is the share of the \
+         seeds in which one plane tells the change from no change at the level of 1 %. *Measured over \
          predicted* is the size of the measured difference along the difference of the predictions; \
-         a pull is its deviation from 1, in units of its stated error, where at least {MIN_DIFFERING} batches \
-         differ. A dash stands where the errors of the predictions are above a tenth of the noise. *KS p* is the p-value of a \
+         a pull is its deviation from 1, in units of its stated error. A dash stands where \
+         fewer than {MIN_DIFFERING} batches differ, or where the errors of the predictions are above a tenth of \
+         the noise. *KS p* is the p-value of a \
          Kolmogorov–Smirnov test of whether p is uniform, where p tests the measured against the \
          predicted difference. Required, over all changes: p is uniform, the mean pull is 0 and the \
          mean squared pull is 63/61; and p is not uniform if the predicted differences are planted \
@@ -187,7 +195,8 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
         words(sampling),
         options.seeds
     );
-    let columns = "scene | field | value | gain | mean χ²/dof | measured over predicted | KS p";
+    let columns =
+        "scene | field | value | gain | seen | mean χ²/dof | measured over predicted | KS p";
     ReportSection::new(format!("Pairs, {}", words(sampling)), text, columns, rows)
 }
 
@@ -199,19 +208,20 @@ fn row(names: &[&str; 3], found: &[PairStatistics]) -> Row {
     let [chi2, _] = mean(&of(|found| found.chi2_per_dof));
     let [ratio, error] = mean(&of(|found| found.ratio.map(|[ratio, _]| ratio)));
     let uniform = uniformity(&of(|found| found.p_value));
+    let [seen, _] = mean(&of(|found| {
+        found.p_nothing.map(|p| f64::from(u8::from(p < LEVEL)))
+    }));
     let numbers = [
         format!("{gain:.1}"),
+        format!("{:.0} %", 100.0 * seen),
         format!("{chi2:.3}"),
         format!("{ratio:.4} ± {error:.4}"),
         format!("{uniform:.3}"),
     ];
     // Predictions of some scenes have errors above the noise of the pairs.
-    let numbers = numbers.map(|text| {
-        if text.contains("NaN") {
-            "–".to_owned()
-        } else {
-            text
-        }
+    let numbers = numbers.map(|text| match text {
+        text if text.contains("NaN") => "–".to_owned(),
+        text => text.replace("inf", "∞"),
     });
     let cells = names.iter().map(|name| (*name).to_owned()).chain(numbers);
     let check =
@@ -264,8 +274,9 @@ impl ChangedPair {
         let has_errors = differences.differing() >= MIN_DIFFERING;
         PairStatistics {
             gain: (apart + alone).sqrt() / noise,
-            p_value: rest.p_value(seed).filter(|_| is_known),
-            p_planted: wrong.p_value(seed).filter(|_| is_known),
+            p_value: rest.p_value(seed).filter(|_| is_known && has_errors),
+            p_nothing: differences.p_value(seed),
+            p_planted: wrong.p_value(seed).filter(|_| is_known && has_errors),
             chi2_per_dof: rest
                 .chi2_per_dof(&variance)
                 .filter(|_| is_known && has_errors),

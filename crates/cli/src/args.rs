@@ -2,6 +2,7 @@
 
 mod figure;
 mod first;
+mod fit;
 mod rays;
 mod run;
 mod shared;
@@ -12,6 +13,7 @@ mod world;
 
 pub(crate) use figure::{FigureArgs, ReportArgs};
 pub(crate) use first::{CompletionsArgs, ManArgs, NewArgs, SCENES};
+pub(crate) use fit::FitArgs;
 pub(crate) use rays::{RaysArgs, SpectrumArgs};
 pub(crate) use run::{
     CheckArgs, CompareArgs, ConvergeArgs, DiffArgs, Expect, ExportArgs, MeasureArgs, PredictArgs,
@@ -64,6 +66,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run a scene for several field values; write a table and curves.
     Sweep(SweepArgs),
+    /// Fit fields of a scene to a measurement, or plan such a fit.
+    Fit(FitArgs),
     /// Measure a scene, or some of its batches, for `compare`.
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
@@ -108,7 +112,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     (
         "Measure and compare",
         &[
-            "new", "run", "check", "sweep", "measure", "predict", "compare", "split", "diff",
+            "new", "run", "check", "sweep", "fit", "measure", "predict", "compare", "split", "diff",
         ],
     ),
     (

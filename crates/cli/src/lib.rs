@@ -18,6 +18,7 @@ mod exit;
 mod export;
 mod figure;
 mod finish;
+mod fit;
 mod interrupt;
 mod manual;
 mod measure;
@@ -74,6 +75,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Diff(args) => diff::diff(&args),
         Command::Report(args) => report::report(&args),
         Command::Sweep(args) => sweep::sweep(&args),
+        Command::Fit(args) => fit::fit(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Covariance(args) => covariance::covariance(&args),
         Command::Variance(args) => variance::variance(&args),

@@ -13,6 +13,7 @@ mod drawing;
 mod explorer;
 mod figure;
 mod first_scenes;
+mod fit;
 mod interruption;
 mod limits;
 mod newcomer;

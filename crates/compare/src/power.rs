@@ -1,6 +1,6 @@
 //! Tests measured power against predicted power, in bins of frequencies.
 
-use crate::residuals::p_of_signs;
+use crate::signs::p_of_signs;
 use ndarray::{Array2, ArrayView2};
 use serde::Serialize;
 

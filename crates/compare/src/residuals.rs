@@ -1,9 +1,10 @@
 //! Computes measured minus predicted slices, batch by batch, and tests these differences.
 
+use crate::signs::{LANES, p_of_signs};
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
-use etendue_spectrum::{Measurement, PlaneBatch};
-use etendue_transform::random::{self, Stream};
+use etendue_spectrum::Measurement;
 use ndarray::{Array, Array2, Array3, ArrayView3, Axis, Dimension};
+use std::slice;
 
 /// Measured minus predicted slices, in independent parts.
 ///
@@ -22,10 +23,6 @@ pub struct Residuals {
 /// The smallest number of pairs that must differ, so that the spread of their differences gives an
 /// error. If a change concerns few photons, most batches are equal in both results.
 pub const MIN_DIFFERING: usize = 24;
-/// Number of rounds of random signs. With this number, the p-value is a multiple of 1/20,000.
-const ROUNDS: u64 = 19_999;
-/// Number of sums that are computed side by side, which the compiler turns into vector instructions.
-const LANES: usize = 8;
 /// Error of the fast transform of photons, as a share of the largest value: at most 2·10⁻⁷ with
 /// full precision, and 2.6·10⁻⁷ in the scenes of results/performance.md with reduced precision.
 const TRANSFORM: f64 = 3e-7;
@@ -65,14 +62,7 @@ impl Residuals {
     /// Panics if the frequencies of the plane differ from the frequencies of the prediction.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
-        let residual = |batch: &PlaneBatch| {
-            check(&batch.slices, prediction);
-            &batch.slices.half - &prediction.half
-        };
-        Self {
-            grid: prediction.grid,
-            parts: measurement.at_plane(plane).map(residual).collect(),
-        }
+        Self::between(measurement, plane, prediction, &[])
     }
 
     /// The differences between a measurement and slices that are the mean of replicates.
@@ -91,16 +81,35 @@ impl Residuals {
         prediction: &Slices,
         replicates: &[Slices],
     ) -> Self {
-        if replicates.is_empty() {
-            return Self::new(measurement, plane, prediction);
-        }
         let batches: Vec<&Slices> = measurement.at_plane(plane).map(|b| &b.slices).collect();
+        Self::between_samples(&batches, prediction, replicates)
+    }
+
+    /// As [`Self::between`], for batches of slices.
+    ///
+    /// # Panics
+    /// Panics if the frequencies of the batches differ from the frequencies of the prediction.
+    #[must_use]
+    pub fn between_samples(
+        batches: &[&Slices],
+        prediction: &Slices,
+        replicates: &[Slices],
+    ) -> Self {
+        let grid = prediction.grid;
+        if replicates.is_empty() {
+            let residual = |batch: &&Slices| {
+                check(batch, prediction);
+                &batch.half - &prediction.half
+            };
+            let parts = batches.iter().map(residual).collect();
+            return Self { grid, parts };
+        }
         let groups = batches.len().min(replicates.len());
         let mut parts = vec![Array3::zeros(prediction.grid.half_shape()); groups];
         // The coefficient of F itself in each group.
         let mut left = vec![0.0; groups];
         let samples: [(f64, Vec<&Slices>); 2] =
-            [(1.0, batches), (-1.0, replicates.iter().collect())];
+            [(1.0, batches.to_vec()), (-1.0, replicates.iter().collect())];
         for (sign, sample) in samples {
             let share = groups as f64 / sample.len() as f64;
             for (i, slices) in sample.iter().enumerate() {
@@ -115,8 +124,22 @@ impl Residuals {
                 part.scaled_add(Complex::from(left), &prediction.half);
             }
         }
-        let grid = prediction.grid;
         Self { grid, parts }
+    }
+
+    /// The residuals combined into `groups` groups of neighbours, whose mean is the same.
+    #[must_use]
+    pub fn grouped(self, groups: usize) -> Self {
+        let count = self.count();
+        if groups == count {
+            return self;
+        }
+        let mut parts = vec![Array3::zeros(self.grid.half_shape()); groups];
+        for (i, part) in self.parts.iter().enumerate() {
+            let share = Complex::from(groups as f64 / count as f64);
+            parts[i * groups / count].scaled_add(share, part);
+        }
+        Self { parts, ..self }
     }
 
     /// The differences between the measurement and the closest spectrum near the
@@ -148,6 +171,19 @@ impl Residuals {
             }
         });
         moved
+    }
+
+    /// The residuals without what the fitted steps of parameters explain: each residual minus its
+    /// `steps`, [R, n], times the derivatives. A change of the parameters leaves them unchanged to
+    /// first order.
+    #[must_use]
+    pub fn without_steps(mut self, derivatives: &[Array3<Complex>], steps: &Array2<f64>) -> Self {
+        for (part, steps) in self.parts.iter_mut().zip(steps.outer_iter()) {
+            for (derivative, step) in derivatives.iter().zip(steps) {
+                part.scaled_add(Complex::from(-step), derivative);
+            }
+        }
+        self
     }
 
     /// The number of residuals R.
@@ -276,7 +312,6 @@ impl Residuals {
     /// The [R, R] matrix H_bc = Σ Re(r_b conj r_c) / s, where the sum runs over the
     /// frequencies. At each frequency, s is 1, or Σ_b |r_b|² if `normalised` is set.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
-        let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
         if normalised {
             scale.fill(0.0);
@@ -284,9 +319,16 @@ impl Residuals {
                 scale.zip_mut_with(residual, |s, r| *s += r.norm_sqr());
             }
         }
+        self.scaled_products(&scale)
+    }
+
+    /// The [R, R] matrix Σ Re(r_b conj r_c) / `scale` over the frequencies where the scale is not 0.
+    #[must_use]
+    pub fn scaled_products(&self, scale: &Array3<f64>) -> Array2<f64> {
+        let r = self.count();
         let mut products = Array2::zeros((r, r));
         for k in 0..self.grid.azimuths {
-            let row = |residual| self.row(residual, &scale, k);
+            let row = |residual| self.row(residual, scale, k);
             let rows: Vec<Vec<f64>> = self.parts.iter().map(row).collect();
             for b in 0..r {
                 for c in 0..=b {
@@ -361,32 +403,18 @@ impl Residuals {
     /// predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
-        let products = self.products(true);
-        let is_noisy = products.diag().sum() > 0.0;
-        is_noisy.then(|| p_of_signs(&products, self.count(), seed, |signs| signs))
+        Self::joint_p_value(slice::from_ref(self), seed)
     }
-}
 
-/// The p-value of a quadratic form of `count` random signs, or of what `factors` makes of
-/// the signs: factors that are 1 or −1. It is the share of rounds in which the form is at least as
-/// large as for signs that are all 1, which count as one round.
-pub(crate) fn p_of_signs(
-    form: &Array2<f64>,
-    count: usize,
-    seed: u64,
-    factors: impl Fn(Vec<[f64; LANES]>) -> Vec<[f64; LANES]>,
-) -> f64 {
-    let observed = signed_sums(form, &factors(vec![[1.0; LANES]; count]))[0];
-    let reached: usize = (0..ROUNDS)
-        .step_by(LANES)
-        .map(|first| {
-            let sums = signed_sums(form, &factors(signs_of_rounds(seed, first, count)));
-            // The last block has fewer rounds than lanes.
-            let drawn = sums.iter().zip(first..ROUNDS);
-            drawn.filter(|(sum, _)| **sum >= observed).count()
-        })
-        .sum();
-    (reached + 1) as f64 / (ROUNDS + 1) as f64
+    /// The p-value of the hypothesis that every residual of several planes has mean zero. All
+    /// planes must have the same number of residuals; residual b of each is from the same photons.
+    #[must_use]
+    pub fn joint_p_value(planes: &[Self], seed: u64) -> Option<f64> {
+        let products = planes.iter().map(|plane| plane.products(true));
+        let products = products.reduce(|a, b| a + b)?;
+        let is_noisy = products.diag().sum() > 0.0;
+        is_noisy.then(|| p_of_signs(&products, products.nrows(), seed, |signs| signs))
+    }
 }
 
 /// Panics if the measured and the predicted slices have different frequencies.
@@ -396,41 +424,6 @@ fn check(measured: &Slices, predicted: &Slices) {
         measured, predicted,
         "the measured and the predicted frequencies differ"
     );
-}
-
-/// Σ_b<c ε_b ε_c H_bc for several rounds of signs, [b][round]. The diagonal is left out
-/// because it is the same for all signs.
-fn signed_sums(products: &Array2<f64>, signs: &[[f64; LANES]]) -> [f64; LANES] {
-    let mut sums = [0.0; LANES];
-    for (b, row) in products.outer_iter().enumerate() {
-        let mut ahead = [0.0; LANES];
-        for (h, signs) in row.iter().zip(&signs[..b]) {
-            for lane in 0..LANES {
-                ahead[lane] += h * signs[lane];
-            }
-        }
-        for lane in 0..LANES {
-            sums[lane] += signs[b][lane] * ahead[lane];
-        }
-    }
-    sums
-}
-
-/// The signs of the rounds from `first` on, [b][round].
-fn signs_of_rounds(seed: u64, first: u64, count: usize) -> Vec<[f64; LANES]> {
-    let mut columns = vec![[0.0; LANES]; count];
-    for (lane, round) in (first..).take(LANES).enumerate() {
-        for (column, sign) in columns.iter_mut().zip(signs(seed, round)) {
-            column[lane] = sign;
-        }
-    }
-    columns
-}
-
-/// Random signs for the batches of one round.
-fn signs(seed: u64, round: u64) -> impl Iterator<Item = f64> {
-    let words = (0..).flat_map(move |block| random::words(seed, Stream::Flip, round, block));
-    words.flat_map(|word| (0..32).map(move |bit| 1.0 - 2.0 * f64::from(word >> bit & 1)))
 }
 
 /// The largest modulus of some slices.

@@ -1,9 +1,11 @@
 //! Estimates the parameters of a prediction from the photons.
 
+use crate::normal::{NormalEquations, weighted};
 use crate::prediction::PredictedParameter;
 use crate::residuals::Residuals;
 use ndarray::Array3;
 use serde::Serialize;
+use std::slice;
 
 /// One parameter of the chain, with its value in the scene and its value as measured by the
 /// photons.
@@ -47,25 +49,18 @@ pub fn score(
     parameter: &PredictedParameter,
     numerical: f64,
 ) -> Option<ParameterReport> {
-    let derivative = &parameter.derivative;
-    let mut weighted = derivative.half.clone();
-    weighted.zip_mut_with(variance, |d, v| {
-        *d = if *v > 0.0 { *d / v } else { (*d).scale(0.0) }
-    });
-    let information = residuals.sum(&weighted, &derivative.half, |w, d| {
-        w.re * d.re + w.im * d.im
-    });
+    let derivative = &parameter.derivative.half;
+    let equations = NormalEquations::new(residuals, variance, slice::from_ref(derivative));
+    let information = equations.information[[0, 0]];
     if information <= 0.0 {
         return None;
     }
-    let steps: Vec<f64> = residuals
-        .each()
-        .map(|r| residuals.sum(&weighted, r, |w, r| w.re * r.re + w.im * r.im) / information)
-        .collect();
+    let steps = equations.steps()?;
     let count = steps.len() as f64;
     let step = steps.iter().sum::<f64>() / count;
     let spread: f64 = steps.iter().map(|s| (s - step).powi(2)).sum();
     let noise = (spread / (count * (count - 1.0))).sqrt();
+    let weighted = weighted(derivative, variance);
     let weight = residuals
         .sum(&weighted, variance, |w, _| w.norm_sqr())
         .sqrt();

@@ -15,7 +15,8 @@ const ROUNDING: f64 = 1e-16;
 /// The probability is Q(dof/2, x/2), the upper regularised incomplete gamma function. Q is computed
 /// from its series below x = dof + 2 and from its continued fraction above (Abramowitz and Stegun
 /// 1964, 6.5.29 and 6.5.31).
-pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
+#[must_use]
+pub fn chi_squared_above(x: f64, dof: f64) -> f64 {
     let (a, x) = (0.5 * dof, 0.5 * x);
     if x <= 0.0 {
         return 1.0;

@@ -6,7 +6,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::batches::{self, Held};
 use etendue_store::stored::{Index, Stored};
-use etendue_store::{Failure, MEASUREMENT, PREDICTION, predictions, theory};
+use etendue_store::{Failure, MEASUREMENT, PREDICTION, SUMMARY, predictions, theory};
 use serde_json::json;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,21 +30,8 @@ pub fn read_case(
     measured: &[PathBuf],
     predicted: PredictionSource<'_>,
 ) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
-    let shards = measured
-        .iter()
-        .map(|folder| Stored::read(folder, MEASUREMENT))
-        .collect::<Result<Vec<Stored<Held>>, _>>()?;
+    let shards = shards(measured)?;
     let first = &shards[0];
-    let experiment = |index: &Index<Held>| {
-        let Index { scene, content, .. } = index;
-        json!({"scene": scene, "method": content.method})
-    };
-    for shard in &shards[1..] {
-        // Batches of different experiments are not replicates of each other.
-        first.check_scene(shard, true)?;
-        first.check_same(shard, &experiment(&first.index), &experiment(&shard.index))?;
-    }
-    shards[1..].iter().try_for_each(Stored::check_inputs)?;
     let scene = first.scene()?;
     let method = first.index.content.method;
     let mut inputs: Vec<PathBuf> = shards.iter().flat_map(Stored::paths).collect();
@@ -72,6 +59,46 @@ pub fn read_case(
         scene,
     };
     Ok((case, inputs))
+}
+
+/// Reads a measurement, which may be in several parts. Returns the measurement and the paths of all
+/// files that were read.
+pub fn read_measurement(measured: &[PathBuf]) -> Result<(Measurement, Vec<PathBuf>), Failure> {
+    let shards = shards(measured)?;
+    let measurement = merged(&shards, &shards[0].scene()?)?;
+    Ok((measurement, shards.iter().flat_map(Stored::paths).collect()))
+}
+
+/// A part of a measurement, or a run that has saved its batches.
+fn shard(folder: &Path) -> Result<Stored<Held>, Failure> {
+    if folder.join(MEASUREMENT).is_file() || !folder.join(SUMMARY).is_file() {
+        return Stored::read(folder, MEASUREMENT);
+    }
+    let run = Stored::read(folder, SUMMARY)?;
+    match run.lists(batches::LEDGER) {
+        true => Ok(run),
+        false => Err(run.fault("the run has no batches; allowed: a run with --save batches")),
+    }
+}
+
+/// The parts of a measurement, which belong to one experiment.
+fn shards(measured: &[PathBuf]) -> Result<Vec<Stored<Held>>, Failure> {
+    let shards = measured
+        .iter()
+        .map(|folder| shard(folder))
+        .collect::<Result<Vec<Stored<Held>>, _>>()?;
+    let first = &shards[0];
+    let experiment = |index: &Index<Held>| {
+        let Index { scene, content, .. } = index;
+        json!({"scene": scene, "method": content.method})
+    };
+    for shard in &shards[1..] {
+        // Batches of different experiments are not replicates of each other.
+        first.check_scene(shard, true)?;
+        first.check_same(shard, &experiment(&first.index), &experiment(&shard.index))?;
+    }
+    shards[1..].iter().try_for_each(Stored::check_inputs)?;
+    Ok(shards)
 }
 
 fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure> {

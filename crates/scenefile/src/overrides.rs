@@ -59,6 +59,15 @@ impl SceneFile {
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
 
+    /// The value of the field at `path`, which may be a list or an item with fields.
+    ///
+    /// # Errors
+    /// A message if the path names no field.
+    pub fn value(&self, path: &str) -> Result<Value, String> {
+        let mut tree = self.tree().map_err(|e| e.to_string())?;
+        place(&mut tree, path).cloned()
+    }
+
     /// The file as a tree of values with all fields, which includes fields that a file does
     /// not write because they were added later.
     fn tree(&self) -> serde_json::Result<Value> {
@@ -82,14 +91,19 @@ impl SceneFile {
 
 /// Sets the value at `path` below a node.
 fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
+    *place(tree, path)? = parsed(value, limits::NESTING)
+        .ok_or_else(|| format!("allowed: brackets nested at most {} deep", limits::NESTING))?;
+    Ok(())
+}
+
+/// The place of the value at `path` below a node.
+fn place<'a>(tree: &'a mut Value, path: &str) -> Result<&'a mut Value, String> {
     let mut place = tree;
     for name in dotted(path).split('.') {
         let refusal = refusal(place, name);
         place = step(place, name).ok_or(refusal)?;
     }
-    *place = parsed(value, limits::NESTING)
-        .ok_or_else(|| format!("allowed: brackets nested at most {} deep", limits::NESTING))?;
-    Ok(())
+    Ok(place)
 }
 
 /// The child called `name`. If the node is a variant of an enum, looks inside the variant.

@@ -7,7 +7,7 @@ use crate::{Failure, Method, Results};
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::ops::Range;
 
 /// The content of `measurement.json`, beside the scene.
@@ -19,11 +19,27 @@ pub struct Held {
     pub method: Method,
     /// Photons emitted in the stored batches.
     pub photons: u64,
-    /// The stored batches.
+    /// The stored batches. A run with all batches states their number.
+    #[serde(deserialize_with = "ranged")]
     pub batches: Range<u32>,
 }
 
-const LEDGER: &str = "ledger.npz";
+/// Reads a range of batches, or the number of batches of a run.
+pub fn ranged<'d, D: Deserializer<'d>>(from: D) -> Result<Range<u32>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Batches {
+        All(u32),
+        Some(Range<u32>),
+    }
+    Ok(match Batches::deserialize(from)? {
+        Batches::All(count) => 0..count,
+        Batches::Some(range) => range,
+    })
+}
+
+/// The file with the numbers of all batches.
+pub const LEDGER: &str = "ledger.npz";
 
 fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/batches.npz", plane.name)

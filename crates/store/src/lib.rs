@@ -38,7 +38,7 @@ pub use argument_style::ArgumentStyle;
 pub use failure::{Failure, FailureKind};
 pub use method::Method;
 pub use results::{
-    COVARIANCE, EXPORT, FIGURE, Finished, MAX_INDEX_BYTES, MEASUREMENT, PICTURE, PREDICTION, PROBE,
-    Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, below, hash_of,
+    COVARIANCE, EXPORT, FIGURE, FIT, Finished, MAX_INDEX_BYTES, MEASUREMENT, PICTURE, PREDICTION,
+    PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, VARIANCE, below, hash_of,
 };
 pub use version::{COMMIT, VERSION};

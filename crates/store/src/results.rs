@@ -39,6 +39,8 @@ pub const PROBE: &str = "probe.json";
 pub const COVARIANCE: &str = "covariance.json";
 /// The index of `etendue variance`.
 pub const VARIANCE: &str = "variance.json";
+/// The index of `etendue fit`.
+pub const FIT: &str = "fit.json";
 /// The file with the seconds of a comparison. The index does not list this file, because the
 /// seconds differ in every run.
 pub const TIMING: &str = "timing.json";
@@ -293,6 +295,7 @@ impl Results {
             PROBE,
             COVARIANCE,
             VARIANCE,
+            FIT,
         ]
         .into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())

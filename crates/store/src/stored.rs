@@ -36,6 +36,7 @@ pub struct Index<T> {
     /// The scene file, including defaults and overrides.
     pub scene_file: SceneFile,
     /// BLAKE3 hash of each mesh and picture of the scene, by its name in the scene file.
+    #[serde(default)]
     inputs: BTreeMap<String, String>,
     files: BTreeMap<String, String>,
 }
@@ -95,9 +96,13 @@ impl<T: DeserializeOwned> Stored<T> {
         sealed::check_seal(&bytes).map_err(fault)?;
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
         if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
-            return Err(fault(
-                "scene_hash is not the hash of scene_file and inputs".to_owned(),
-            ));
+            let what = match name {
+                SUMMARY => {
+                    "a run holds no copies of the meshes and pictures of its scene; allowed: a folder of `measure`"
+                }
+                _ => "scene_hash is not the hash of scene_file and inputs",
+            };
+            return Err(fault(what.to_owned()));
         }
         Ok(Self {
             folder: folder.to_owned(),
@@ -141,6 +146,12 @@ impl<T> Stored<T> {
     pub fn paths(&self) -> Vec<PathBuf> {
         let files = self.index.files.keys().map(|name| self.folder.join(name));
         files.chain([self.path.clone()]).collect()
+    }
+
+    /// Checks whether the index lists the file `name`.
+    #[must_use]
+    pub fn lists(&self, name: &str) -> bool {
+        self.index.files.contains_key(name)
     }
 
     /// The arrays in the file `name`.

@@ -41,14 +41,18 @@ const SAME: f64 = 1e-9;
 
 /// Reads the prediction of each plane from a file.
 pub fn read(path: &Path, planes: &[VirtualPlane]) -> Result<Vec<Prediction>, Failure> {
+    parse(path, regular_bytes(path)?, planes)
+}
+
+/// The bytes of a regular file.
+fn regular_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let unread =
         |why: &dyn Display| Failure::bad_input(format!("cannot read {}: {why}", path.display()));
     // A device could be read for ever.
     if std::fs::metadata(path).is_ok_and(|of| !of.is_file()) {
         return Err(unread(&"it is no regular file"));
     }
-    let bytes = std::fs::read(path).map_err(|e| unread(&e))?;
-    parse(path, bytes, planes)
+    std::fs::read(path).map_err(|e| unread(&e))
 }
 
 /// The prediction of each plane in the bytes of a file, which messages name as `path`.
@@ -57,7 +61,58 @@ pub fn parse(
     bytes: Vec<u8>,
     planes: &[VirtualPlane],
 ) -> Result<Vec<Prediction>, Failure> {
-    let mut file = NpzFile::new(path.to_owned(), bytes)?;
+    let mut file = opened(path, bytes, planes)?;
+    let each = planes.iter().map(|plane| {
+        let mut arrays = TheoryArrays {
+            file: &mut file,
+            plane,
+        };
+        arrays.prediction(path)
+    });
+    each.collect()
+}
+
+/// A plane that another program has measured, in the form of a prediction.
+#[derive(Clone, Debug)]
+pub struct MeasuredArrays {
+    /// Number of the plane.
+    pub plane: usize,
+    /// The slices and their replicates.
+    pub prediction: Prediction,
+    /// The errors of the slices, [azimuth, ρ ≥ 0, ν].
+    pub sigma: Option<Array3<f64>>,
+}
+
+/// Reads those of `planes` that a file of another program holds.
+pub fn measured(path: &Path, planes: &[VirtualPlane]) -> Result<Vec<MeasuredArrays>, Failure> {
+    let mut file = opened(path, regular_bytes(path)?, planes)?;
+    let names = file.names();
+    let is_in = |plane: &VirtualPlane| {
+        let parts = names.iter().filter_map(|name| name.rsplit_once('/'));
+        parts.into_iter().any(|(of, _)| of == plane.name)
+    };
+    let found = planes.iter().enumerate().filter(|(_, plane)| is_in(plane));
+    let found = found.map(|(i, plane)| {
+        let mut arrays = TheoryArrays {
+            file: &mut file,
+            plane,
+        };
+        Ok(MeasuredArrays {
+            plane: i,
+            prediction: arrays.prediction(path)?,
+            sigma: arrays.sigma()?,
+        })
+    });
+    let found: Vec<_> = found.collect::<Result<_, Failure>>()?;
+    match found.is_empty() {
+        true => Err(Failure::bad_input(format!("{}: no arrays", path.display()))),
+        false => Ok(found),
+    }
+}
+
+/// The file with these bytes, which holds only arrays of planes.
+fn opened(path: &Path, bytes: Vec<u8>, planes: &[VirtualPlane]) -> Result<NpzFile, Failure> {
+    let file = NpzFile::new(path.to_owned(), bytes)?;
     let is_known = |name: &String| {
         let parts = name.rsplit_once('/');
         parts.is_some_and(|(plane, array)| {
@@ -73,14 +128,7 @@ pub fn parse(
         );
         return Err(file.fault(&other, allowed));
     }
-    let each = planes.iter().map(|plane| {
-        let mut arrays = TheoryArrays {
-            file: &mut file,
-            plane,
-        };
-        arrays.prediction(path)
-    });
-    each.collect()
+    Ok(file)
 }
 
 /// The file of the predictions of planes.
@@ -198,6 +246,13 @@ impl TheoryArrays<'_> {
             let error = squares.sum::<f64>() / (count * (count - 1.0));
             return Ok(Some(error.sqrt()));
         }
+        let sum = |sigma: Array3<f64>| sigma.iter().map(|sigma| sigma * sigma).sum::<f64>();
+        Ok(self.sigma()?.map(|sigma| sum(sigma).sqrt() / size))
+    }
+
+    /// The errors of the slices, [azimuth, ρ ≥ 0, ν], if the file states them.
+    fn sigma(&mut self) -> Result<Option<Array3<f64>>, Failure> {
+        let name = self.name("sigma");
         if !self.file.has(&name) {
             return Ok(None);
         }
@@ -205,12 +260,7 @@ impl TheoryArrays<'_> {
         if sigma.iter().any(|sigma| *sigma < 0.0) {
             return Err(self.file.fault(&name, "must not be negative"));
         }
-        let sum: f64 = self
-            .half(sigma.view())
-            .iter()
-            .map(|sigma| sigma * sigma)
-            .sum();
-        Ok(Some(sum.sqrt() / size))
+        Ok(Some(self.half(sigma.view())))
     }
 
     fn parameters(&mut self) -> Result<Vec<PredictedParameter>, Failure> {

@@ -1,5 +1,5 @@
-//! Studies that make many runs or none: sweeps over fields of a scene, and Monte Carlo errors of
-//! pixels, predicted from measured spectra.
+//! Studies that make many runs or none: sweeps over fields of a scene, fits of fields to a
+//! measurement, and Monte Carlo errors of pixels, predicted from measured spectra.
 //!
 //! This crate judges nothing: each point of a sweep is a run of `etendue_pipeline`.
 
@@ -8,5 +8,6 @@
     reason = "a Failure holds the complete message for the user"
 )]
 
+pub mod fit;
 pub mod sweep;
 pub mod variance;

@@ -13,14 +13,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4416,
-        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`",
+        4580,
+        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`; `fit`",
     ),
     (
         "compare",
         2927,
-        3145,
-        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs",
+        3390,
+        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information",
     ),
     (
         "explorer",
@@ -44,8 +44,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "pipeline",
         5436,
-        3344,
-        "a scene is measured against another one",
+        3347,
+        "a scene is measured against another one; a run with batches is a measurement",
     ),
     (
         "predict",
@@ -57,8 +57,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "python",
         1640,
-        1791,
-        "theories of the user, as arrays and as functions; chains of scenes; `difference` compares pairs",
+        1850,
+        "theories of the user, as arrays and as functions; chains of scenes; `difference` compares pairs; `fit`",
     ),
     ("rayfile", 2394, 2394, ""),
     (
@@ -73,8 +73,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "scenefile",
         3036,
-        3044,
-        "lobes of files become lobes here, not twice above",
+        3062,
+        "the value at a path; lobes of files become lobes here, not twice above",
     ),
     ("scenes", 52, 52, ""),
     (
@@ -87,10 +87,15 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3636,
-        "predictions of other programs are read, and written; a method",
+        3716,
+        "predictions of other programs are read, and written; a method; measurements of other programs are read",
     ),
-    ("studies", 4009, 4146, "differences of neighbouring points"),
+    (
+        "studies",
+        4009,
+        5603,
+        "differences of neighbouring points; `fit`, and its plan",
+    ),
     (
         "theory",
         15390,
@@ -109,8 +114,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        68_494,
-        "conventions that are mistaken are planted, and found; pairs over many seeds",
+        69_239,
+        "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds",
     ),
 ];
 

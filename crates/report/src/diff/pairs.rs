@@ -18,7 +18,7 @@ pub(super) struct PairedNumbers {
     /// have without pairs.
     pub(super) unpaired_noise: f64,
     /// The p-value of the hypothesis that the difference of the predictions is the true difference;
-    /// `None` if a prediction is missing or has errors of its own.
+    /// `None` if a prediction is missing or has errors of its own, or if too few batches differ.
     pub(super) p_predicted: Option<f64>,
     /// The reason why the pairs give no errors.
     pub(super) few: Option<String>,
@@ -104,7 +104,10 @@ impl<'a> Pairs<'a> {
         let test = TwoSamples::paired(grid, samples, &self.differences, self.seed);
         let apart = TwoSamples::new(grid, samples[0], samples[1]);
         let predicted = a.predicted.as_ref().zip(b.predicted.as_ref());
-        let predicted = predicted.filter(|_| [a, b].iter().all(|slices| slices.is_closed_form));
+        // The noise of a change that few photons meet is not known.
+        let has_noise = self.differences.differing() >= MIN_DIFFERING;
+        let is_exact = [a, b].iter().all(|slices| slices.is_closed_form);
+        let predicted = predicted.filter(|_| has_noise && is_exact);
         let p_predicted =
             predicted.and_then(|(a, b)| self.differences.without(&(b - a)).p_value(self.seed));
         let numbers = PairedNumbers {

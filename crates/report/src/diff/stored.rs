@@ -3,11 +3,12 @@
 use etendue_compare::{Class, Estimate, Residuals, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use etendue_scene::{Color, read_below};
+use etendue_store::batches::ranged;
 use etendue_store::npz::NpzFile;
 use etendue_store::stored::listed_bytes;
 use etendue_store::{Failure, MAX_INDEX_BYTES, MEASUREMENT, SUMMARY, sealed, theory};
 use ndarray::{Array1, Array2, Array3, Array4, Axis};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -54,26 +55,12 @@ pub(super) struct ResultIndex {
     pub(super) seed: u64,
     pub(super) method: String,
     pub(super) photons: u64,
-    #[serde(deserialize_with = "batches")]
-    pub(super) batches: Range<usize>,
+    #[serde(deserialize_with = "ranged")]
+    pub(super) batches: Range<u32>,
     /// The planes. A measurement does not list its planes, so they have no numbers.
     #[serde(default)]
     pub(super) planes: Vec<StoredPlane>,
     files: BTreeMap<String, String>,
-}
-
-/// The batches of a measurement, or the number of batches of a run.
-fn batches<'d, D: Deserializer<'d>>(from: D) -> Result<Range<usize>, D::Error> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Batches {
-        All(usize),
-        Some(Range<usize>),
-    }
-    Ok(match Batches::deserialize(from)? {
-        Batches::All(count) => 0..count,
-        Batches::Some(range) => range,
-    })
 }
 
 /// The numbers of a plane in `summary.json` that `diff` needs. If a number does not exist, it is
