@@ -97,8 +97,13 @@ def fit(
         if to.measurement is None:
             raise ValueError("the spectrum was pickled, and has no batches; allowed: a spectrum of this process")
         to = to.measurement
-    paths = [to] if isinstance(to, (str, os.PathLike)) else to
-    target = to._raw if isinstance(to, Measurement) else [os.fspath(path) for path in paths]  # type: ignore[union-attr]
+    target: _etendue.Measurement | list[str]
+    if isinstance(to, Measurement):
+        target = to._raw  # pyright: ignore[reportPrivateUsage]
+    elif isinstance(to, (str, os.PathLike)):
+        target = [os.fspath(to)]
+    else:
+        target = [os.fspath(path) for path in to]
     given = [(path, (float(low), float(high))) for path, (low, high) in (ranges or {}).items()]
     count, threads = whole("starts", starts, 1, 1000), thread_count(threads)
     with told(progress) as tell:
