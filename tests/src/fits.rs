@@ -19,7 +19,7 @@ use ndarray::{Array1, Array2, Axis, stack};
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct FitOptions {
     /// Number of seeds of each scene.
-    #[arg(long, default_value_t = 1000)]
+    #[arg(long, default_value_t = 40)]
     pub(crate) seeds: u64,
 }
 
