@@ -9,5 +9,6 @@
 )]
 
 pub mod fit;
+mod index;
 pub mod sweep;
 pub mod variance;

@@ -93,7 +93,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "studies",
         4009,
-        5603,
+        5630,
         "differences of neighbouring points; `fit`, and its plan",
     ),
     (

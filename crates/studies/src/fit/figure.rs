@@ -13,7 +13,7 @@ pub const NAMES: [&str; 3] = ["fit.png", "fit.svg", "fit.csv"];
 /// Number of cells along each axis.
 const CELLS: usize = 48;
 /// The largest number of pairs: those that are most correlated.
-const MOST: usize = 6;
+const MAX_PAIRS: usize = 6;
 /// Extent of the axes, in standard errors.
 const EXTENT: f64 = 3.5;
 
@@ -31,7 +31,7 @@ pub fn drawn(scene: &str, fitted: &Fitted) -> Result<Option<Figure>, Failure> {
         row.map_or(0.0, |row| row[*j].abs())
     };
     pairs.sort_by(|a, b| correlation(b).total_cmp(&correlation(a)));
-    pairs.truncate(MOST);
+    pairs.truncate(MAX_PAIRS);
     let figures = pairs
         .into_iter()
         .map(|pair| of_pair(scene, fitted, bound.as_ref(), pair));

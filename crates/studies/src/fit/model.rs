@@ -40,7 +40,7 @@ pub(super) struct Linearised {
 
 /// The first step of a finite difference, as a share of the value; or the step itself where the
 /// value is 0.
-pub(super) const FIRST_STEP: f64 = 0.01;
+const FIRST_STEP: f64 = 0.01;
 /// The smallest step of a finite difference, as a share of the value. Where rays sample a
 /// prediction, smaller steps would compare single rays.
 const MIN_STEP: f64 = 1e-5;
@@ -56,6 +56,11 @@ pub(super) fn size(value: f64) -> f64 {
     if value == 0.0 { 1.0 } else { value.abs() }
 }
 
+/// The steps of finite differences before the noise of the fields is known.
+pub(super) fn first_steps(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|of| FIRST_STEP * size(*of)).collect()
+}
+
 /// The steps of finite differences after a linearisation with this information.
 pub(super) fn steps(values: &[f64], information: &Array2<f64>) -> Vec<f64> {
     let each = values.iter().zip(information.diag());
@@ -67,7 +72,7 @@ pub(super) fn steps(values: &[f64], information: &Array2<f64>) -> Vec<f64> {
 }
 
 /// The frequencies of a grid up to a share of the largest.
-pub(super) fn coarse(mut grid: SliceGrid, share: f64) -> SliceGrid {
+fn coarse(mut grid: SliceGrid, share: f64) -> SliceGrid {
     for axis in [&mut grid.rho, &mut grid.nu] {
         let half = etendue_field::whole((share * axis.half as f64).ceil());
         axis.half = half.clamp(axis.half.min(1), axis.half);
@@ -76,7 +81,7 @@ pub(super) fn coarse(mut grid: SliceGrid, share: f64) -> SliceGrid {
 }
 
 /// The part of an array [azimuth, ρ ≥ 0, ν] on a coarse grid.
-pub(super) fn cropped<T: Clone>(all: &Array3<T>, grid: &SliceGrid) -> Array3<T> {
+fn cropped<T: Clone>(all: &Array3<T>, grid: &SliceGrid) -> Array3<T> {
     let first = all.dim().2 / 2 - grid.nu.half;
     let rho = all.slice_axis(Axis(1), (..=grid.rho.half).into());
     let nu = (first..first + grid.nu.count()).into();
@@ -207,7 +212,7 @@ impl FitModel<'_> {
 }
 
 /// The equations of several planes.
-pub(super) fn summed(each: impl Iterator<Item = NormalEquations>) -> NormalEquations {
+fn summed(each: impl Iterator<Item = NormalEquations>) -> NormalEquations {
     each.reduce(|a, b| a.plus(&b)).expect("a plane")
 }
 

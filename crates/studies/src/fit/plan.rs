@@ -1,7 +1,7 @@
 //! Plans a fit: how many photons each free field needs at each plane.
 
 use crate::fit::data::FitData;
-use crate::fit::model::{FIRST_STEP, FitModel, size};
+use crate::fit::model::{FitModel, first_steps, size};
 use crate::fit::request::FitRequest;
 use crate::fit::result::{Degeneracy, degeneracy_of, is_determined, spread};
 use crate::fit::search::FitStarts;
@@ -59,8 +59,8 @@ pub fn plan(request: &FitRequest, pilot: u64, reporter: &dyn Reporter) -> Result
         fields: &request.free,
         planes: &data.planes,
     };
-    let steps: Vec<f64> = values.iter().map(|of| FIRST_STEP * size(*of)).collect();
-    let at = model.linearised(&values, model.predict(&values, 1.0)?, &steps, 1.0)?;
+    let here = model.predict(&values, 1.0)?;
+    let at = model.linearised(&values, here, &first_steps(&values), 1.0)?;
     let residuals = model.residuals(&at);
     let planned = |name: String, planes: Range<usize>| {
         let equations = model.each(&at, &residuals, planes);

@@ -3,12 +3,14 @@
 use crate::fit::data::FitData;
 use crate::fit::model::{FitModel, size};
 use crate::fit::result::{Fitted, fit};
-use crate::fit::search::{FitStarts, STEPS_OF_SEARCH};
-use crate::sweep::scene_at;
+use crate::fit::search::FitStarts;
+use crate::index::with_scene;
+use crate::sweep::values::number;
+use crate::sweep::{given_twice, scene_at};
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{Reporter, Work};
 use etendue_scene::{RunFile, Scene};
-use etendue_store::{Failure, VERSION};
+use etendue_store::Failure;
 use serde_json::{Value, json};
 
 /// A scene with free fields.
@@ -35,10 +37,8 @@ impl FitRequest {
     /// Reads the scene with its free fields, and checks that they are numbers.
     pub fn read(&self) -> Result<(Scene, FitStarts), Failure> {
         let scene = load::scene(&self.scene, |_| ())?;
-        let mut sorted = self.free.clone();
-        sorted.sort();
-        if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            let free = self.scene.arguments.with("free", &twice[0]);
+        if let Some(twice) = given_twice(self.free.iter().map(String::as_str)) {
+            let free = self.scene.arguments.with("free", twice);
             return Err(Failure::bad_input(format!("{free} is given twice")));
         }
         if !(1..=MAX_FIELDS).contains(&self.free.len()) {
@@ -116,7 +116,7 @@ impl FitRequest {
         };
         let bar = reporter.begin(Work::Steps {
             verb: "fitting",
-            total: starts.count + STEPS_OF_SEARCH,
+            total: starts.descents(),
             things: "descents",
         });
         let test = (scene.run.alpha, scene.run.seed);
@@ -127,12 +127,7 @@ impl FitRequest {
 /// The content of `fit.json`, without its list of files.
 #[must_use]
 pub fn index(scene: &Scene, fitted: &Fitted) -> Value {
-    let mut tree = json!(fitted);
-    tree["scene"] = scene.name.as_str().into();
-    tree["scene_hash"] = json!(scene.hash());
-    tree["scene_file"] = json!(scene.file);
-    tree["version"] = json!(VERSION);
-    tree
+    with_scene(json!(fitted), scene)
 }
 
 /// Parses a range of the form FIELD=A..B.
@@ -140,8 +135,7 @@ pub fn range(text: &str) -> Result<(String, [f64; 2]), String> {
     let parsed = || {
         let (path, range) = text.split_once('=')?;
         let (from, to) = range.split_once("..")?;
-        let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-        let ends = [number(from)?, number(to)?];
+        let ends = [number(from).ok()?, number(to).ok()?];
         (ends[0] < ends[1]).then(|| (etendue_scene::dotted(path.trim()), ends))
     };
     parsed().ok_or_else(|| "must be FIELD=A..B, with numbers A below B".to_owned())

@@ -10,7 +10,7 @@ use etendue_compare::{
 };
 use etendue_field::tidy;
 use etendue_store::Failure;
-use ndarray::{Array2, Array3, Axis};
+use ndarray::{Array2, Axis};
 use serde::Serialize;
 
 /// A free field and its estimate.
@@ -269,7 +269,7 @@ fn numerical(model: &FitModel<'_>, minimum: &Minimum) -> Array2<f64> {
         let error = prediction.error().filter(|_| is_exact).unwrap_or(0.0);
         let size = error * prediction.slices.norm();
         let grid = prediction.slices.grid;
-        let none = Residuals::of(grid, vec![Array3::zeros(grid.half_shape())]);
+        let none = Residuals::of(grid, Vec::new());
         let weight = &data.variance * &data.variance;
         let squares = NormalEquations::new(&none, &weight, derivatives).information;
         total = total + squares * (size * size);
@@ -302,17 +302,15 @@ pub(super) fn degeneracy_of(
     let roots = information.diag().mapv(f64::sqrt);
     let largest = shares.iter().map(|share| share.abs()).fold(0.0, f64::max);
     let named = (0..fields.len()).filter(|i| shares[*i].abs() >= MIN_SHARE * largest);
-    let changes = named.map(|i| (fields[i].clone(), shares[i] / roots[i] / size(values[i])));
-    let mut changes: Vec<(String, f64)> = changes.collect();
+    let changes = named.map(|i| (i, shares[i] / roots[i] / size(values[i])));
+    let changes: Vec<(usize, f64)> = changes.collect();
     let most = changes.iter().map(|(_, by)| *by);
     let most = most.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
-    changes.iter_mut().for_each(|(_, by)| *by /= most);
-    let value_of = |field: &String| fields.iter().position(|of| of == field).map(|i| values[i]);
-    let is_zero = |field: &String| value_of(field) == Some(0.0);
+    let changes = changes.into_iter().map(|(i, by)| (i, by / most));
     Some(Degeneracy {
         information: least.max(0.0),
-        words: words(&changes, &is_zero),
-        changes,
+        words: words(changes.clone().map(|(i, by)| (&*fields[i], values[i], by))),
+        changes: changes.map(|(i, by)| (fields[i].clone(), by)).collect(),
     })
 }
 
@@ -321,14 +319,14 @@ pub(super) fn is_determined(degeneracy: Option<&Degeneracy>) -> bool {
     degeneracy.is_none_or(|degeneracy| degeneracy.information > UNDETERMINED)
 }
 
-/// Names fields that change the spectra alike: changes of one per cent, or of 0.01 where the value
-/// in the scene is 0.
-fn words(changes: &[(String, f64)], is_zero: &dyn Fn(&String) -> bool) -> String {
+/// Names fields that change the spectra alike, with their values and relative changes: changes of
+/// one per cent, or of 0.01 where the value is 0.
+fn words<'a>(changes: impl Iterator<Item = (&'a str, f64, f64)> + Clone) -> String {
     let side = |rises: bool| {
-        let side = changes.iter().filter(|(_, by)| (*by > 0.0) == rises);
-        let words = side.map(|(field, by)| {
+        let side = changes.clone().filter(|(_, _, by)| (*by > 0.0) == rises);
+        let words = side.map(|(field, value, by)| {
             let by = (by.abs() * 100.0).round() / 100.0;
-            match is_zero(field) {
+            match value == 0.0 {
                 true => format!("{field} by {}", tidy(0.01 * by)),
                 false => format!("{field} by {} %", tidy(by)),
             }

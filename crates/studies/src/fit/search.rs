@@ -1,6 +1,6 @@
 //! The search for minima of χ²: from several starts, and from low frequencies to all.
 
-use crate::fit::model::{FIRST_STEP, FitModel, Linearised, size, steps};
+use crate::fit::model::{FitModel, Linearised, first_steps, steps};
 use etendue_compare::solved;
 use etendue_store::{Failure, FailureKind};
 use ndarray::{Array1, Array2, Axis};
@@ -10,8 +10,6 @@ use ndarray::{Array1, Array2, Axis};
 const LEVELS: [f64; 4] = [0.125, 0.25, 0.5, 1.0];
 /// The largest number of minima that each level hands on to the next.
 const KEPT: [usize; 4] = [4, 3, 2, 2];
-/// The largest number of starts of all levels but the first.
-pub(super) const STEPS_OF_SEARCH: usize = KEPT[0] + KEPT[1] + KEPT[2];
 /// The largest number of steps at a level.
 const MAX_STEPS: usize = 40;
 /// A search ends when χ² is expected to fall by less, if noise at all frequencies is independent.
@@ -49,6 +47,17 @@ pub(super) struct Minimum {
 }
 
 impl FitStarts {
+    /// The first level of the search. A single start is taken as near.
+    fn first_level(&self) -> usize {
+        if self.count == 1 { LEVELS.len() - 1 } else { 0 }
+    }
+
+    /// The largest number of descents of the search.
+    pub(super) fn descents(&self) -> usize {
+        let later = &KEPT[self.first_level()..KEPT.len() - 1];
+        self.count + later.iter().sum::<usize>()
+    }
+
     /// The starting points: the values of the scene, and points of a Kronecker sequence that fill
     /// the ranges evenly.
     fn points(&self) -> Vec<Vec<f64>> {
@@ -80,21 +89,12 @@ pub(super) fn minima(
     starts: &FitStarts,
     advance: &dyn Fn(),
 ) -> Result<Vec<Minimum>, Failure> {
-    let begin = |values: Vec<f64>| {
-        let steps = values.iter().map(|value| FIRST_STEP * size(*value));
-        (steps.collect::<Vec<_>>(), values)
-    };
+    let begin = |values: Vec<f64>| (first_steps(&values), values);
     let mut begins: Vec<_> = starts.points().into_iter().map(begin).collect();
-    let mut found: Vec<Minimum> = Vec::new();
-    // A single start is taken as near.
-    let first = if starts.count == 1 {
-        LEVELS.len() - 1
-    } else {
-        0
-    };
-    for (share, kept) in LEVELS.into_iter().zip(KEPT).skip(first) {
+    let mut minima = Vec::new();
+    for (share, kept) in LEVELS.into_iter().zip(KEPT).skip(starts.first_level()) {
         let mut failure = None;
-        found.clear();
+        let mut found: Vec<Minimum> = Vec::new();
         for (steps, values) in begins {
             match descended(model, values, steps, share) {
                 Ok(minimum) => found.push(minimum),
@@ -107,7 +107,7 @@ pub(super) fn minima(
             advance();
         }
         found.sort_by(|a, b| a.chi2.total_cmp(&b.chi2));
-        found = distinct(std::mem::take(&mut found));
+        found = distinct(found);
         found.truncate(kept);
         if let (true, Some(failure)) = (found.is_empty(), failure) {
             return Err(failure);
@@ -116,8 +116,9 @@ pub(super) fn minima(
         begins = next
             .map(|at| (at.steps.clone(), at.values.clone()))
             .collect();
+        minima = found;
     }
-    Ok(found)
+    Ok(minima)
 }
 
 /// The minima without those that repeat a lower one.
@@ -136,7 +137,7 @@ fn distinct(all: Vec<Minimum>) -> Vec<Minimum> {
 }
 
 /// Descends from a point to a minimum of χ² by damped Gauss–Newton steps (Marquardt 1963).
-pub(super) fn descended(
+fn descended(
     model: &FitModel<'_>,
     mut values: Vec<f64>,
     mut differences: Vec<f64>,
@@ -146,7 +147,8 @@ pub(super) fn descended(
     let here = model.predict(&values, share)?;
     let mut chi2 = model.chi2(&here);
     let mut at = model.linearised(&values, here, &differences, share)?;
-    for round in 0.. {
+    let mut rounds = 0;
+    loop {
         let equations = model.equations(&at);
         check(model, &equations.information)?;
         let information = equations.information;
@@ -159,7 +161,7 @@ pub(super) fn descended(
             let fall = step
                 .as_ref()
                 .map_or(0.0, |step| step.dot(&information.dot(step)));
-            if fall < SMALL_FALL || round == MAX_STEPS {
+            if fall < SMALL_FALL || rounds == MAX_STEPS {
                 break None;
             }
             let moved: Vec<f64> = values
@@ -168,14 +170,21 @@ pub(super) fn descended(
                 .map(|(v, s)| v + s)
                 .collect();
             match model.predict(&moved, share) {
-                Ok(there) if model.chi2(&there) < chi2 => {
-                    damping /= DAMPING_FACTOR;
-                    break Some((moved, there));
+                Ok(there) => {
+                    let lower = model.chi2(&there);
+                    if lower < chi2 {
+                        chi2 = lower;
+                        damping /= DAMPING_FACTOR;
+                        break Some((moved, there));
+                    }
                 }
                 Err(failure) if failure.kind != FailureKind::BadInput => return Err(failure),
-                _ if damping > MAX_DAMPING => break None,
-                _ => damping *= DAMPING_FACTOR,
+                Err(_) => {}
             }
+            if damping > MAX_DAMPING {
+                break None;
+            }
+            damping *= DAMPING_FACTOR;
         };
         let Some((moved, there)) = next else {
             return Ok(Minimum {
@@ -184,14 +193,13 @@ pub(super) fn descended(
                 information,
                 at,
                 steps: differences,
-                has_converged: damping <= 1.0 && round < MAX_STEPS,
+                has_converged: damping <= 1.0 && rounds < MAX_STEPS,
             });
         };
         values = moved;
-        chi2 = model.chi2(&there);
         at = model.linearised(&values, there, &differences, share)?;
+        rounds += 1;
     }
-    unreachable!("the last round returns")
 }
 
 /// Fails if the spectrum does not depend on a field.

@@ -26,7 +26,10 @@ pub fn text(scene: &str, fitted: &Fitted) -> String {
     }
     lines.push(String::new());
     if fitted.groups.is_none() {
-        lines.push("errors are from stored deviations: planes are taken as independent".to_owned());
+        lines.push(
+            "errors are those of the file: the noise of all frequencies is taken as independent"
+                .to_owned(),
+        );
     }
     if let Some(degeneracy) = &fitted.degeneracy {
         let times = 1.0 / degeneracy.information.sqrt();

@@ -15,6 +15,7 @@ mod table;
 pub mod values;
 
 pub use bandwidth::{BandwidthRow, bandwidths};
+pub(crate) use points::given_twice;
 pub use points::{SweepPoints, scene_at};
 pub use request::SweepRequest;
 pub use run::{FinishedSweep, run};

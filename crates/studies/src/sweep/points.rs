@@ -181,14 +181,19 @@ fn check(
         .filter(|(_, given)| *given)
         .map(|(path, _)| *path);
     let fixed = set.iter().map(|(path, _)| path.as_str()).chain(options);
-    let mut given: Vec<&str> = fixed
-        .chain(sweeps.iter().map(|sweep| sweep.path.as_str()))
-        .collect();
-    given.sort_unstable();
-    match given.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(Failure::bad_input(format!("{} is given twice", pair[0]))),
+    let given = fixed.chain(sweeps.iter().map(|sweep| sweep.path.as_str()));
+    match given_twice(given) {
+        Some(path) => Err(Failure::bad_input(format!("{path} is given twice"))),
         None => Ok(()),
     }
+}
+
+/// A path that is given more than once.
+pub(crate) fn given_twice<'a>(paths: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let mut paths: Vec<&str> = paths.collect();
+    paths.sort_unstable();
+    let twice = paths.windows(2).find(|pair| pair[0] == pair[1]);
+    twice.map(|pair| pair[0])
 }
 
 /// Separates the fields that are set to one value from the swept fields.

@@ -118,7 +118,8 @@ fn allowed(why: &str, arguments: ArgumentStyle) -> String {
     format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, all of them numbers")
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// A finite number.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
     number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
 }

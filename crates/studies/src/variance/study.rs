@@ -5,12 +5,13 @@ use super::{
     PowerEstimate, Sampler, SamplerReport, VarianceError, WindowMoments, WindowRadiance,
     WindowStudy, axis_sets, dyadic_power, field_options, with_box_window,
 };
+use crate::index::with_scene;
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_pipeline::field::check_grid;
 use etendue_pipeline::{Reporter, Work, limits, method, planes};
 use etendue_scene::Scene;
 use etendue_spectrum::Uncertain;
-use etendue_store::{ArgumentStyle, Failure, Method, VERSION};
+use etendue_store::{ArgumentStyle, Failure, Method};
 
 /// The smallest variance over the window, in standard errors, that is told from noise.
 const MIN_VARIATION: f64 = 4.0;
@@ -285,11 +286,7 @@ impl<'a> VarianceStudy<'a> {
         (scene, method): (&Scene, Method),
         found: &PlaneVariance,
     ) -> serde_json::Value {
-        let mut tree = found.tree(&self.options);
-        tree["scene"] = scene.name.as_str().into();
-        tree["scene_hash"] = serde_json::json!(scene.hash());
-        tree["scene_file"] = serde_json::json!(scene.file);
-        tree["version"] = serde_json::json!(VERSION);
+        let mut tree = with_scene(found.tree(&self.options), scene);
         tree["method"] = serde_json::json!(method);
         tree
     }
