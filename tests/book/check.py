@@ -47,8 +47,15 @@ KINDS = [
     "not shown",
 ]
 FEW = "2^16"
-# Its blocks need the Python package: python/tests/test_docs.py runs them.
-ELSEWHERE = ["package.md"]
+# Their blocks need the Python package: python/tests/test_docs.py runs them.
+ELSEWHERE = [
+    "etendue-and-mtf.md",
+    "grids.md",
+    "operators-in-python.md",
+    "own-theory.md",
+    "package.md",
+    "renderer-tests.md",
+]
 # What the commands of the book are when it is tested.
 WORDS = {
     "etendue": """
