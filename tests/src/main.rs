@@ -17,6 +17,7 @@ mod assumptions;
 mod bandwidth;
 mod calibration;
 mod claims;
+mod derivatives;
 mod faults;
 mod fits;
 mod full_radial;
@@ -70,6 +71,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- assumptions  minutes; random scenes with the checks of theory switched off
   cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
   cargo run --release -p etendue-validation -- fits         errors of fits over many seeds; writes results/fits.md
+  cargo run --release -p etendue-validation -- derivatives  minutes; derivatives of 32 fields by etendue in the same folder
   cargo run --release -p etendue-validation -- transform    errors of the slice transform over 20 random scenes
   cargo run --release -p etendue-validation -- rows         an hour; table1, shading and every row of Table 1
   cargo run --release -p etendue-validation -- all          two hours; writes the whole of results/validation.md")]
@@ -180,6 +182,15 @@ enum ValidationCommand {
     /// Measure scenes by their difference from another scene with the same photons; exit code 1 if
     /// stated errors are wrong.
     Pairs(pairs::PairOptions),
+    /// Compare measured derivatives of 32 fields with those of theory.
+    Derivatives {
+        /// Photons of each run.
+        #[arg(long, default_value_t = 1 << 18)]
+        photons: u64,
+        /// Seed of the first field; each has its own.
+        #[arg(long, default_value_t = SEED)]
+        seed: u64,
+    },
     /// Measure errors, p and bounds of fits over many seeds, far starts, degenerate scenes and wrong
     /// models; write results/fits.md.
     Fits(fits::FitOptions),
@@ -221,6 +232,9 @@ fn main() -> ExitCode {
         ValidationCommand::Assumptions(options) => one(assumptions::assumptions(options)),
         ValidationCommand::Pulls(options) => printed(pulls::pulls(options)),
         ValidationCommand::Pairs(options) => printed(Ok(pairs::pairs(options))),
+        ValidationCommand::Derivatives { photons, seed } => {
+            one(derivatives::section(*photons, *seed))
+        }
         ValidationCommand::Transform(options) => one(transform::transform(options)),
         ValidationCommand::Plain(options) => one(second::plain(options)),
         ValidationCommand::Second => one(second::second()),

@@ -1,13 +1,16 @@
 //! Implements `etendue sweep`, which runs a scene for several values of its fields.
 
 use crate::args::SweepArgs;
+use crate::conclude::code_of;
 use crate::print::say;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
+use etendue_compare::Verdict;
 use etendue_pipeline::Leader;
 use etendue_report::table::aligned;
 use etendue_store::Failure;
+use etendue_studies::derivative::derivative;
 use etendue_studies::sweep::{FinishedSweep, SweepPoints, run};
 
 /// The maximum number of undecided planes whose reasons are printed.
@@ -21,40 +24,65 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
 /// Runs [`sweep()`], and shares the points of the sweep with other processes.
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
-        let request = args.request();
+        let mut request = args.request();
+        let field = args.derivative.as_ref();
+        let field = field.map(|field| {
+            let value;
+            (value, request) = field.sweep(request.clone())?;
+            Ok::<_, Failure>((field, value))
+        });
+        let field = field.transpose()?;
         let all = SweepPoints::read(&request)?;
-        let folder = args.out.or_named(format!("{}-sweep", all.name()));
+        let kind = if field.is_some() {
+            "derivative"
+        } else {
+            "sweep"
+        };
+        let folder = args.out.or_named(format!("{}-{kind}", all.name()));
         if !args.work.quiet {
             for warning in all.warnings() {
                 warnings::warn(&warning);
             }
         }
         let terminal = Terminal::new(args.work.quiet);
+        if let Some((field, value)) = field {
+            let parts = (&request, &all, &*folder);
+            let derivative = derivative(field, value, parts, workers, &terminal)?;
+            if !args.work.quiet {
+                say(&derivative.text());
+                print_end(&derivative.sweep);
+            }
+            return Ok(code_of(derivative.verdict));
+        }
         let finished = run(&request, &all, &folder, workers, &terminal)?;
         if !args.work.quiet {
             print(&finished);
         }
         let [_, fail, undecided] = finished.verdicts;
-        Ok(match (fail > 0, undecided > 0) {
-            (true, _) => 1,
-            (false, true) => 4,
-            (false, false) => 0,
-        })
+        Ok(code_of(match (fail > 0, undecided > 0) {
+            (true, _) => Verdict::Fail,
+            (false, true) => Verdict::Undecided,
+            (false, false) => Verdict::Pass,
+        }))
     })
 }
 
 fn print(finished: &FinishedSweep) {
-    let FinishedSweep {
-        folder,
-        rows,
-        has_curves,
-        verdicts: [pass, fail, undecided],
-        undecided: reasons,
-    } = finished;
-    say(&aligned(rows.clone()).join("\n"));
-    if !has_curves {
+    say(&aligned(finished.rows.clone()).join("\n"));
+    if !finished.has_curves {
         say("no curves are drawn, because the figure would have more than 24 panels");
     }
+    print_end(finished);
+}
+
+/// Prints the verdicts of the points and the folder.
+fn print_end(finished: &FinishedSweep) {
+    let FinishedSweep {
+        folder,
+        verdicts: [pass, fail, undecided],
+        undecided: reasons,
+        ..
+    } = finished;
     let all = pass + fail + undecided;
     say(&format!(
         "{all} points: {pass} pass, {fail} fail, {undecided} undecided"

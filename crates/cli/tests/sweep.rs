@@ -107,6 +107,48 @@ fn points_have_one_seed_where_that_is_asked_for() {
     assert_eq!(seeds, ["3", "4"].map(str::to_owned).into());
 }
 
+#[test]
+fn a_derivative_is_that_of_theory_over_the_largest_step_without_bias() {
+    let folder = small();
+    let path = folder.path();
+    // The spectrum is linear in the radiance, and periodic in the position of a grating.
+    let line = |field: &str| {
+        let line = format!("sweep small.ron --photons 65536 --out d --force --derivative {field}");
+        passes(path, &line);
+        let rows = rows(&path.join("d/derivative.csv"));
+        let at = rows.into_iter().filter(|row| row["plane"] == "receiver");
+        let at: Vec<_> = at.collect();
+        assert_eq!(at.len(), 3, "{at:?}");
+        at
+    };
+    let number = |row: &BTreeMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
+    let chosen = |rows: &[BTreeMap<String, String>]| {
+        rows.iter().position(|row| row["chosen"] == "true").unwrap()
+    };
+    let radiance = line("light.radiance");
+    assert_eq!(chosen(&radiance), 0, "no step has a bias");
+    let size = number(&radiance[0], "size");
+    assert!((size - 1.0).abs() < 1e-9, "of one per unit: {size}"); // rounding
+    let place = line("blockers.0.center.0=0.08");
+    let at = chosen(&place);
+    assert!(at > 0, "a step of most of a period has a bias: {place:?}");
+    assert!(number(&place[at], "bias") <= number(&place[at], "noise"));
+    for row in [&radiance[0], &place[at]] {
+        let [share, error] = ["share_of_theory", "error_of_share"].map(|key| number(row, key));
+        // Five errors: with a fixed seed, the test cannot fail by chance.
+        assert!((share - 1.0).abs() < 5.0 * error && error < 0.1, "{row:?}");
+    }
+    let message = fails(
+        path,
+        "sweep small.ron --derivative light.radiance --set light.radiance=1,2",
+        2,
+    );
+    let allowed = "allowed beside --derivative light.radiance: one value";
+    assert!(message.contains(allowed), "{message}");
+    let message = fails(path, "sweep small.ron --derivative run.photons", 2);
+    assert!(message.contains("whole number"), "{message}");
+}
+
 /// If the folder of points is a link, points are not written through it.
 #[test]
 fn points_go_through_no_link() {

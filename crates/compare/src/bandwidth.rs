@@ -1,10 +1,29 @@
-//! The bandwidths of lobes and of measured reflections along ν.
+//! The bandwidths of lobes and of measured reflections along ν, and changes of bandwidths and slopes.
 
 use etendue_field::Lobe;
 use etendue_spectrum::bandwidth::{Along, BANDWIDTH_FRACTION};
 use etendue_spectrum::estimate::TooFewBatches;
+use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::PlanarLobe;
+
+/// The changes of the bandwidths along ρ and ν and of the shear slope of plane `index` from `a` to
+/// `b`, whose batches have the same random numbers, with their standard errors.
+///
+/// # Errors
+/// Returns an error if a measurement has too few batches.
+pub fn paired_changes(
+    [a, b]: [&Measurement; 2],
+    index: usize,
+) -> Result<[Option<Uncertain>; 3], TooFewBatches> {
+    let grid = &a.planes()[index].grid;
+    let [a, b] = [CrossPower::new(a, index)?, CrossPower::new(b, index)?];
+    Ok([
+        a.bandwidth_change(&b, Along::Rho),
+        a.bandwidth_change(&b, Along::Nu),
+        a.change(&b, |power| shear_slope(power, grid)),
+    ])
+}
 
 /// Ω_ρ in cycles per radian: the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of
 /// its energy. Returns `None` for a lobe centred on the normal.

@@ -33,7 +33,7 @@ mod two_samples;
 mod variation;
 mod verdict;
 
-pub use bandwidth::{lobe_cutoff, measured_bandwidth};
+pub use bandwidth::{lobe_cutoff, measured_bandwidth, paired_changes};
 pub use class::Class;
 pub use field::PredictedField;
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};

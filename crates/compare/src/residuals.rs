@@ -173,6 +173,30 @@ impl Residuals {
         moved
     }
 
+    /// The residuals times a number.
+    #[must_use]
+    pub fn scaled(mut self, by: f64) -> Self {
+        for part in &mut self.parts {
+            part.mapv_inplace(|value| value * by);
+        }
+        self
+    }
+
+    /// The differences to other residuals of the same photons.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let [a, b] = [other, self].map(|of| of.parts.iter().map(|part| part.view()));
+        Self::of_pairs(self.grid, a, b)
+    }
+
+    /// Each residual as slices.
+    #[must_use]
+    pub fn slices(&self) -> Vec<Slices> {
+        let grid = self.grid;
+        let each = self.parts.iter().cloned();
+        each.map(|half| Slices { grid, half }).collect()
+    }
+
     /// The residuals without what the fitted steps of parameters explain: each residual minus its
     /// `steps`, [R, n], times the derivatives. A change of the parameters leaves them unchanged to
     /// first order.
@@ -346,7 +370,8 @@ impl Residuals {
 
     /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and the delete-one
     /// jackknife error of this value (docs/theory.md, section 6).
-    pub(crate) fn squared(&self) -> (f64, f64) {
+    #[must_use]
+    pub fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
         let rows: Vec<f64> = products

@@ -23,6 +23,8 @@ pub enum CurveKind {
     OtherTheory,
     /// Large open points with error bars, for a second measurement.
     OtherMeasured,
+    /// Thick bars below points, for the errors of their changes.
+    Change,
 }
 
 impl CurveKind {
@@ -32,7 +34,7 @@ impl CurveKind {
             Self::Theory => Some(THEORY),
             Self::Rival => Some(RIVAL),
             Self::OtherTheory => Some(OTHER_THEORY),
-            Self::Measured | Self::OtherMeasured => None,
+            Self::Measured | Self::OtherMeasured | Self::Change => None,
         }
     }
 
@@ -40,7 +42,7 @@ impl CurveKind {
     fn layer(self) -> usize {
         match self {
             Self::Theory | Self::Rival | Self::OtherTheory => 0,
-            Self::OtherMeasured => 1,
+            Self::OtherMeasured | Self::Change => 1,
             Self::Measured => 2,
         }
     }
@@ -139,6 +141,8 @@ const OTHER_THEORY: Stroke = Stroke {
     width: 1.8,
     dash: "10 4",
 };
+/// A bar that is wider than a point, so that a short bar is seen beside it.
+const CHANGE: Stroke = Stroke::solid("#c8502e", 9.0);
 const POINT: &str = INK;
 /// Radius of an open point and of its hole, in which another point is visible.
 const OPEN: f64 = 5.0;
@@ -321,6 +325,11 @@ pub(crate) fn draw_curve(svg: &mut Svg, frame: &Panel<'_>, kind: CurveKind, poin
 
 /// Draws a point with its error bar.
 fn point(svg: &mut Svg, kind: CurveKind, at: [f64; 2], ends: [f64; 2]) {
+    if kind == CurveKind::Change {
+        let [from, to] = ends.map(|y| [at[0], y]);
+        svg.line(from, to, CHANGE);
+        return;
+    }
     bar(svg, at, ends);
     if kind == CurveKind::OtherMeasured {
         svg.circle(at, OPEN, POINT);

@@ -69,6 +69,15 @@ pub fn read_measurement(measured: &[PathBuf]) -> Result<(Measurement, Vec<PathBu
     Ok((measurement, shards.iter().flat_map(Stored::paths).collect()))
 }
 
+/// The batches of a run of `scene` that has saved them.
+pub fn batches_of_run(folder: &Path, scene: &Scene) -> Result<Measurement, Failure> {
+    let run = shard(folder)?;
+    if !run.is_of(scene) {
+        return Err(run.fault("the run is one of another scene"));
+    }
+    merged(&[run], scene)
+}
+
 /// A part of a measurement, or a run that has saved its batches.
 fn shard(folder: &Path) -> Result<Stored<Held>, Failure> {
     if folder.join(MEASUREMENT).is_file() || !folder.join(SUMMARY).is_file() {

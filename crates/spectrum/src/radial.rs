@@ -241,6 +241,33 @@ impl<'m> CrossPower<'m> {
         })
     }
 
+    /// The change of the bandwidth from this to `other`, at the azimuth where this bandwidth is
+    /// largest: see [`CrossPower::change`].
+    pub fn bandwidth_change(&self, other: &Self, along: Along) -> Option<Uncertain> {
+        let (slice, _) = widest_slice(self.pairs.view(), &self.grid, along)?;
+        let [a, b] = [self, other].map(|of| of.slice(slice));
+        a.change(&b, |power| along.bandwidth(power, &self.grid))
+    }
+
+    /// The change of a statistic from this to `other`, of which each batch has the same random
+    /// numbers as that of this, and its standard error by the delete-one jackknife over pairs of
+    /// batches.
+    pub fn change(
+        &self,
+        other: &Self,
+        of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>,
+    ) -> Option<Uncertain> {
+        let mut jackknife = Jackknife::new(ndarray::Ix0());
+        for left_out in 0..self.batches.len() {
+            let [a, b] = [self, other].map(|of| of.without(left_out));
+            jackknife.add(&ndarray::arr0(of(b.view())? - of(a.view())?));
+        }
+        Some(Uncertain {
+            value: of(other.power().view())? - of(self.power().view())?,
+            error: jackknife.variance().into_scalar().sqrt(),
+        })
+    }
+
     /// Returns several statistics of the power, and their standard errors as in
     /// [`CrossPower::statistic`].
     fn statistics(

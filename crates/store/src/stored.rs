@@ -95,27 +95,37 @@ impl<T: DeserializeOwned> Stored<T> {
         }
         sealed::check_seal(&bytes).map_err(fault)?;
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
-        if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
-            let what = match name {
-                SUMMARY => {
-                    "a run holds no copies of the meshes and pictures of its scene; allowed: a folder of `measure`"
-                }
-                _ => "scene_hash is not the hash of scene_file and inputs",
-            };
-            return Err(fault(what.to_owned()));
-        }
-        Ok(Self {
+        let stored = Self {
             folder: folder.to_owned(),
             path,
             name,
             index,
-        })
+        };
+        // A run does not list the meshes and pictures of its scene.
+        match name == SUMMARY || stored.has_hash_of_scene() {
+            true => Ok(stored),
+            false => Err(stored.fault("scene_hash is not the hash of scene_file and inputs")),
+        }
     }
 }
 
 impl<T> Stored<T> {
+    /// Checks whether the stage is one of a scene.
+    pub fn is_of(&self, scene: &Scene) -> bool {
+        self.index.scene_hash == scene.hash()
+    }
+
+    fn has_hash_of_scene(&self) -> bool {
+        self.index.scene_hash == scene_hash(&self.index.scene_file, &self.index.inputs)
+    }
+
     /// The scene of the stage; its meshes and pictures are the stage's own copies.
     pub fn scene(&self) -> Result<Scene, Failure> {
+        if !self.has_hash_of_scene() {
+            return Err(self.fault(
+                "a run holds no copies of the meshes and pictures of its scene; allowed: a folder of `measure`",
+            ));
+        }
         let Index {
             scene,
             scene_file,

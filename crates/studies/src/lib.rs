@@ -8,6 +8,7 @@
     reason = "a Failure holds the complete message for the user"
 )]
 
+pub mod derivative;
 pub mod fit;
 mod index;
 pub mod sweep;

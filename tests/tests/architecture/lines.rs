@@ -13,14 +13,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4580,
-        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`; `fit`",
+        4620,
+        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`; `fit`; `sweep --derivative`",
     ),
     (
         "compare",
         2927,
-        3390,
-        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information",
+        3434,
+        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information; residuals that are scaled and subtracted, and paired changes of bandwidths",
     ),
     (
         "explorer",
@@ -36,7 +36,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "lights say which rays they emit; shapes move; lobes have names; light fields of slices came from report; what triangles with \
          interpolated normals do to radiance; `grouped` from pipeline; corners of a hole in the scene's order",
     ),
-    ("figures", 4650, 4363, ""),
+    ("figures", 4650, 4372, "bars for errors of changes"),
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
     ("meshfile", 1657, 1658, "an empty line"),
     ("mpi", 77, 77, ""),
@@ -44,8 +44,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "pipeline",
         5436,
-        3347,
-        "a scene is measured against another one; a run with batches is a measurement",
+        3356,
+        "a scene is measured against another one; a run with batches is a measurement; batches of a run of a known scene",
     ),
     (
         "predict",
@@ -80,21 +80,21 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "spectrum",
         3218,
-        3349,
+        3376,
         "errors of bandwidths hold where noise is strong; noise of pictures without power; \
-         long functions say why; measurements by their difference from another scene",
+         long functions say why; measurements by their difference from another scene; paired changes of a statistic",
     ),
     (
         "store",
         3185,
-        3716,
-        "predictions of other programs are read, and written; a method; measurements of other programs are read",
+        3726,
+        "predictions of other programs are read, and written; a method; measurements of other programs are read; runs of scenes with pictures give their batches",
     ),
     (
         "studies",
         4009,
-        5630,
-        "differences of neighbouring points; `fit`, and its plan",
+        6197,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs",
     ),
     (
         "theory",
@@ -114,7 +114,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_239,
+        69_486,
         "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds",
     ),
 ];

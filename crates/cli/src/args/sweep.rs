@@ -4,6 +4,7 @@
 use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;
 use etendue_pipeline::load::SceneSource;
+use etendue_studies::derivative::DerivedField;
 use etendue_studies::sweep::SweepRequest;
 use etendue_studies::sweep::values::{Setting, Sweep, setting, sweep};
 use std::path::PathBuf;
@@ -12,6 +13,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:8
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:4log --set blockers.0.fill=0.3,0.6 --photons 2^20
+  etendue sweep scenes/fig9b.ron --derivative surfaces.0.center.2 --photons 2^20
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
 Writes to out/NAME-sweep, or to the folder of --out:
@@ -25,6 +27,10 @@ Writes to out/NAME-sweep, or to the folder of --out:
                                        PNG, SVG and CSV (none if they would have
                                        more than 24 panels)
   differences.csv                      with --common-seed
+  derivative.csv, PLANE/derivative.npz with --derivative, which writes to
+                                       out/NAME-derivative. A row for each plane
+                                       and step, and the slices of the chosen
+                                       step
   points/                              the run of each point. The same command
                                        continues an interrupted sweep. A command
                                        with other values of the same fields runs
@@ -49,6 +55,12 @@ pub(crate) struct SweepArgs {
     /// and the point's values
     #[arg(long)]
     pub(crate) common_seed: bool,
+
+    /// Measure the derivative of the slices by a field, instead of a sweep: from pairs of runs with
+    /// three steps up to STEP [default: 4 % of the value]. The largest step whose bias is below the
+    /// noise is taken, and theory is compared over the same step
+    #[arg(long, value_name = "FIELD[=STEP]", value_parser = DerivedField::parse, conflicts_with = "together")]
+    pub(crate) derivative: Option<DerivedField>,
 
     /// Vary several fields together, value by value, instead of in all combinations; all fields
     /// must have the same number of values

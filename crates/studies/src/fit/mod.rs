@@ -16,7 +16,9 @@ pub mod table;
 
 pub use data::{FitData, FitPlane};
 pub use model::FitModel;
+pub(crate) use model::size;
 pub use plan::{FitPlan, PlannedPlane, plan};
 pub use request::{FitRequest, index, range};
+pub(crate) use result::spread;
 pub use result::{Degeneracy, FitMinimum, Fitted, FittedField, fit};
 pub use search::FitStarts;

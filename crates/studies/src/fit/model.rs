@@ -52,7 +52,7 @@ const STEP_ERRORS: f64 = 3.0;
 const MAX_GROUPS: usize = 1024;
 
 /// The size of a field for steps and ranges.
-pub(super) fn size(value: f64) -> f64 {
+pub(crate) fn size(value: f64) -> f64 {
     if value == 0.0 { 1.0 } else { value.abs() }
 }
 
@@ -90,7 +90,7 @@ fn cropped<T: Clone>(all: &Array3<T>, grid: &SliceGrid) -> Array3<T> {
 
 impl FitModel<'_> {
     /// The prediction of each measured plane, at frequencies up to a share of the largest.
-    pub(super) fn predict(&self, values: &[f64], share: f64) -> Result<Vec<Prediction>, Failure> {
+    pub(crate) fn predict(&self, values: &[f64], share: f64) -> Result<Vec<Prediction>, Failure> {
         let scene = (self.scene_at)(values)?;
         let each = self.planes.iter().map(|data| {
             let mut plane = scene.planes[data.index].clone();

@@ -5,7 +5,7 @@ use crate::fit::model::{FitModel, size};
 use crate::fit::result::{Fitted, fit};
 use crate::fit::search::FitStarts;
 use crate::index::with_scene;
-use crate::sweep::values::number;
+use crate::sweep::values::{number, real_value};
 use crate::sweep::{given_twice, scene_at};
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{Reporter, Work};
@@ -47,7 +47,9 @@ impl FitRequest {
                 self.free.len()
             )));
         }
-        let values = self.free.iter().map(|path| self.value(&scene, path));
+        let arguments = self.scene.arguments;
+        let value = |path: &String| real_value(&scene, path, arguments.with("free", path));
+        let values = self.free.iter().map(value);
         let values: Vec<f64> = values.collect::<Result<_, _>>()?;
         let known = |path: &String| self.free.contains(path);
         if let Some((path, _)) = self.ranges.iter().find(|(path, _)| !known(path)) {
@@ -69,22 +71,6 @@ impl FitRequest {
                 count,
             },
         ))
-    }
-
-    /// The value of a field.
-    fn value(&self, scene: &Scene, path: &str) -> Result<f64, Failure> {
-        let fault = |what: String| {
-            let free = self.scene.arguments.with("free", path);
-            Failure::bad_input(format!("{free}: {what}"))
-        };
-        let value = scene.file.value(path).map_err(fault)?;
-        let real = "allowed: fields that are real numbers";
-        let number = value.as_f64();
-        let number = number.ok_or_else(|| fault(format!("the value is {value}; {real}")))?;
-        match value.is_f64() {
-            true => Ok(number),
-            false => Err(fault(format!("{value} is a whole number; {real}"))),
-        }
     }
 
     /// The scene in which the free fields have the given values. Its predictions are as accurate as

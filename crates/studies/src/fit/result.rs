@@ -252,7 +252,7 @@ impl JudgedMinimum {
 }
 
 /// The covariance of the mean of steps, [R, n].
-pub(super) fn spread(steps: &Array2<f64>) -> Array2<f64> {
+pub(crate) fn spread(steps: &Array2<f64>) -> Array2<f64> {
     let count = steps.nrows() as f64;
     let apart = steps - &(steps.sum_axis(Axis(0)) / count);
     apart.t().dot(&apart) / (count * (count - 1.0))

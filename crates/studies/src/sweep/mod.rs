@@ -18,4 +18,5 @@ pub use bandwidth::{BandwidthRow, bandwidths};
 pub(crate) use points::given_twice;
 pub use points::{SweepPoints, scene_at};
 pub use request::SweepRequest;
+pub(crate) use run::begin;
 pub use run::{FinishedSweep, run};

@@ -1,5 +1,6 @@
 //! Draws the curves of a sweep: each plane's numbers as functions of the first field.
 
+use crate::sweep::differences::PointDifferences;
 use crate::sweep::table::{BANDWIDTHS, PointResult, SLOPE, TableNumber, numbers};
 use crate::sweep::values::{SweepPoint, short, shown};
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Style};
@@ -19,6 +20,7 @@ pub(crate) fn drawn(
     scene: &str,
     found: &[PointResult],
     together: bool,
+    differences: &PointDifferences,
 ) -> Result<Vec<Figure>, Failure> {
     let mut panels: Vec<(String, SweepPoint)> = Vec::new();
     for (at, plane) in found
@@ -67,13 +69,14 @@ pub(crate) fn drawn(
                 .iter()
                 .filter(|at| self::others(at, together) == *others);
             let of_plane = |at: &PointResult| {
-                let plane = at.planes().find(|p| name(p) == plane)?;
-                let number = numbers(plane)
+                let of_plane = at.planes().find(|p| name(p) == plane)?;
+                let number = numbers(of_plane)
                     .into_iter()
                     .find(|n| n.quantity == quantity)?;
-                Some((at.point[0].1, number))
+                let of = [&at.folder, name(of_plane), quantity];
+                Some((at.point[0].1, number, differences.error(of)))
             };
-            let mut numbers: Vec<(f64, TableNumber)> = at.filter_map(of_plane).collect();
+            let mut numbers: Vec<_> = at.filter_map(of_plane).collect();
             // The values are sorted, because lists may give the values in any order.
             numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
             panel(plane, others, &found[0].point[0].0, &numbers)
@@ -94,16 +97,30 @@ fn panel(
     plane: &str,
     others: &SweepPoint,
     path: &str,
-    numbers: &[(f64, TableNumber)],
+    numbers: &[(f64, TableNumber, Option<f64>)],
 ) -> CurvePanel {
     let curve = |kind, name: &str, point: &dyn Fn(&TableNumber) -> Option<[f64; 2]>| {
         let points = numbers
             .iter()
-            .filter_map(|(x, number)| point(number).map(|[y, error]| [*x, y, error]));
+            .filter_map(|(x, number, _)| point(number).map(|[y, error]| [*x, y, error]));
         Curve::new(kind, name, points.collect())
     };
+    let changes = numbers.iter();
+    let changes = changes.filter_map(|(x, number, error)| Some([*x, number.measured?, (*error)?]));
+    let changes: Vec<_> = changes.collect();
     let predicted = |number: &TableNumber| Some([number.predicted?, 0.0]);
     let measured = |number: &TableNumber| Some([number.measured?, number.error.unwrap_or(0.0)]);
+    let mut curves = vec![
+        curve(CurveKind::Theory, "predicted", &predicted),
+        curve(CurveKind::Measured, "measured", &measured),
+    ];
+    if !changes.is_empty() {
+        curves.push(Curve::new(
+            CurveKind::Change,
+            "error of the change from the point before",
+            changes,
+        ));
+    }
     let others = others
         .iter()
         .map(|(path, value)| (short(path).to_owned(), *value));
@@ -114,11 +131,8 @@ fn panel(
     CurvePanel {
         title,
         x: AxisQuantity::new(short(path), etendue_scene::unit(path)),
-        is_log: [go_by_factors(numbers.iter().map(|(x, _)| *x)), false],
-        curves: vec![
-            curve(CurveKind::Theory, "predicted", &predicted),
-            curve(CurveKind::Measured, "measured", &measured),
-        ],
+        is_log: [go_by_factors(numbers.iter().map(|(x, ..)| *x)), false],
+        curves,
     }
 }
 

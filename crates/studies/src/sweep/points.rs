@@ -1,7 +1,7 @@
 //! The points of a sweep, each with its scene.
 
 use crate::sweep::request::SweepRequest;
-use crate::sweep::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
+use crate::sweep::values::{Sweep, SweepPoint, message_at, points, shown};
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{Reporter, Run, Summary, judged};
 use etendue_predict::test_of;
@@ -27,9 +27,7 @@ pub struct SweepPoints {
 impl SweepPoints {
     /// Reads the scene at all points.
     pub fn read(request: &SweepRequest) -> Result<Self, Failure> {
-        let (set, sweeps) = settings(&request.set);
-        let mut source = request.scene.clone();
-        source.set.extend(set);
+        let (source, sweeps) = request.settings();
         check(request, &source.set, &sweeps)?;
         let options = |run: &mut RunFile| {
             run.photons = request.photons.unwrap_or(run.photons);
@@ -194,18 +192,6 @@ pub(crate) fn given_twice<'a>(paths: impl Iterator<Item = &'a str>) -> Option<&'
     paths.sort_unstable();
     let twice = paths.windows(2).find(|pair| pair[0] == pair[1]);
     twice.map(|pair| pair[0])
-}
-
-/// Separates the fields that are set to one value from the swept fields.
-fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
-    let (mut set, mut sweeps) = (Vec::new(), Vec::new());
-    for setting in all {
-        match setting {
-            Setting::Value(path, value) => set.push((path.clone(), value.clone())),
-            Setting::Sweep(sweep) => sweeps.push(sweep.clone()),
-        }
-    }
-    (set, sweeps)
 }
 
 /// The scene with some further fields set to numbers; `options` overrides fields at all

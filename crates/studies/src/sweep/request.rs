@@ -1,6 +1,6 @@
 //! The request of a sweep.
 
-use crate::sweep::values::Setting;
+use crate::sweep::values::{Setting, Sweep};
 use etendue_pipeline::load::SceneSource;
 use etendue_store::Method;
 
@@ -39,5 +39,17 @@ impl SweepRequest {
             method: Method::Photons,
             force: false,
         }
+    }
+
+    /// The scene with the fields that are set to one value, and the swept fields.
+    pub(crate) fn settings(&self) -> (SceneSource, Vec<Sweep>) {
+        let (mut source, mut sweeps) = (self.scene.clone(), Vec::new());
+        for setting in &self.set {
+            match setting {
+                Setting::Value(path, value) => source.set.push((path.clone(), value.clone())),
+                Setting::Sweep(sweep) => sweeps.push(sweep.clone()),
+            }
+        }
+        (source, sweeps)
     }
 }

@@ -1,11 +1,12 @@
 //! Runs a sweep. The missing points are run first, and then the table and the curves are written.
 
+use crate::sweep::differences::PointDifferences;
+use crate::sweep::pictures;
 use crate::sweep::points::{SweepPoints, files};
 use crate::sweep::quiet_reporter::Unshown;
 use crate::sweep::request::SweepRequest;
 use crate::sweep::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::sweep::values::{Sweep, SweepPoint, short, shown};
-use crate::sweep::{differences, pictures};
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Run, Task, Work, load};
 use etendue_report::pictures::PictureFiles;
@@ -40,6 +41,16 @@ pub struct FinishedSweep {
     pub undecided: Vec<String>,
 }
 
+/// A sweep whose points are stored, before the table and the pictures are written.
+#[derive(Debug)]
+pub(crate) struct TracedSweep<'a> {
+    request: &'a SweepRequest,
+    points: &'a SweepPoints,
+    folder: &'a Path,
+    pub(crate) found: Vec<PointResult>,
+    results: Results,
+}
+
 /// Runs the missing points, and writes the table and the pictures. Each point is stored in
 /// `folder`.
 pub fn run(
@@ -49,6 +60,19 @@ pub fn run(
     workers: Option<&Leader<'_>>,
     reporter: &dyn Reporter,
 ) -> Result<FinishedSweep, Failure> {
+    let traced = begin(request, all, folder, &[], workers, reporter)?;
+    traced.finish(Vec::new(), reporter)
+}
+
+/// Runs the missing points, each stored in `folder`; `names` are those of further files.
+pub(crate) fn begin<'a>(
+    request: &'a SweepRequest,
+    all: &'a SweepPoints,
+    folder: &'a Path,
+    names: &[String],
+    workers: Option<&Leader<'_>>,
+    reporter: &dyn Reporter,
+) -> Result<TracedSweep<'a>, Failure> {
     let checked =
         |scene: &Scene| Run::of(scene.clone(), request.method, Vec::new())?.check_limits();
     all.scenes.iter().try_for_each(checked)?;
@@ -64,8 +88,15 @@ pub fn run(
         "interrupted: finished points are kept; the same command continues from them",
     );
     let found = run_all(request, folder, &inputs, all, workers, reporter)?;
-    let results = Results::claim(folder, plan(request, &inputs))?;
-    finish((request, folder), all, &found, results, reporter)
+    let mut plan = plan(request, &inputs);
+    plan.files.extend_from_slice(names);
+    Ok(TracedSweep {
+        request,
+        points: all,
+        folder,
+        found,
+        results: Results::claim(folder, plan)?,
+    })
 }
 
 /// Fails if the folder already holds a sweep of other fields.
@@ -240,58 +271,71 @@ struct SweepIndex<'a> {
     files: &'a BTreeMap<String, String>,
 }
 
-/// Writes the table and the pictures.
-fn finish(
-    (request, folder): (&SweepRequest, &Path),
-    all: &SweepPoints,
-    found: &[PointResult],
-    mut results: Results,
-    reporter: &dyn Reporter,
-) -> Result<FinishedSweep, Failure> {
-    let SweepPoints { base, sweeps, .. } = all;
-    let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
-    results.write(TABLE, &table::csv(&paths, found)?)?;
-    if request.common_seed {
-        let differences = differences::csv(folder, found, request.together)?;
-        results.write(DIFFERENCES, &differences)?;
-    }
-    let stage = reporter.begin(Work::Stage("writing results"));
-    let figures = pictures::drawn(&base.name, found, request.together)?;
-    let has_curves = !figures.is_empty();
-    for (name, figure) in pictures::NAMES.iter().zip(figures) {
-        PictureFiles::new((*name).to_owned(), figure)?.write(&mut results)?;
-    }
-    let finished = results.finish(|files| {
-        json(&SweepIndex {
-            scene: &base.name,
-            version: VERSION,
-            scene_file: &base.file,
-            together: request.together,
-            sweeps: sweeps
+impl TracedSweep<'_> {
+    /// Writes the table, the pictures and further files.
+    pub(crate) fn finish(
+        self,
+        files: Vec<(String, Vec<u8>)>,
+        reporter: &dyn Reporter,
+    ) -> Result<FinishedSweep, Failure> {
+        let Self {
+            request,
+            points,
+            folder,
+            found,
+            mut results,
+        } = self;
+        let SweepPoints { base, sweeps, .. } = points;
+        for (name, bytes) in files {
+            results.write(&name, &bytes)?;
+        }
+        let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
+        results.write(TABLE, &table::csv(&paths, &found)?)?;
+        let differences = match request.common_seed {
+            true => PointDifferences::read(folder, (&found, &points.scenes), request.together)?,
+            false => PointDifferences::default(),
+        };
+        let stage = reporter.begin(Work::Stage("writing results"));
+        let figures = pictures::drawn(&base.name, &found, request.together, &differences)?;
+        if request.common_seed {
+            results.write(DIFFERENCES, &differences.csv()?)?;
+        }
+        let has_curves = !figures.is_empty();
+        for (name, figure) in pictures::NAMES.iter().zip(figures) {
+            PictureFiles::new((*name).to_owned(), figure)?.write(&mut results)?;
+        }
+        let finished = results.finish(|files| {
+            json(&SweepIndex {
+                scene: &base.name,
+                version: VERSION,
+                scene_file: &base.file,
+                together: request.together,
+                sweeps: sweeps
+                    .iter()
+                    .map(|s| (s.path.as_str(), s.values.as_slice()))
+                    .collect(),
+                points: found.iter().map(|at| at.folder.as_str()).collect(),
+                files,
+            })
+        })?;
+        drop(stage);
+        if let Some(message) = finished.replaced_message() {
+            reporter.note(&message);
+        }
+        let count = |verdict: &str| {
+            found
                 .iter()
-                .map(|s| (s.path.as_str(), s.values.as_slice()))
-                .collect(),
-            points: found.iter().map(|at| at.folder.as_str()).collect(),
-            files,
+                .filter(|at| at.summary["verdict"] == verdict)
+                .count()
+        };
+        Ok(FinishedSweep {
+            folder: finished.folder,
+            rows: rows(&paths, &found),
+            has_curves,
+            verdicts: ["pass", "fail", "undecided"].map(count),
+            undecided: found.iter().flat_map(undecided).collect(),
         })
-    })?;
-    drop(stage);
-    if let Some(message) = finished.replaced_message() {
-        reporter.note(&message);
     }
-    let count = |verdict: &str| {
-        found
-            .iter()
-            .filter(|at| at.summary["verdict"] == verdict)
-            .count()
-    };
-    Ok(FinishedSweep {
-        folder: finished.folder,
-        rows: rows(&paths, found),
-        has_curves,
-        verdicts: ["pass", "fail", "undecided"].map(count),
-        undecided: found.iter().flat_map(undecided).collect(),
-    })
 }
 
 /// The reasons why planes of a point are undecided.

@@ -35,9 +35,18 @@ impl PointResult {
 pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"];
 pub(crate) const SLOPE: &str = "slope";
 
+/// The unit of a number that every plane has.
+pub(crate) fn unit_of(quantity: &str) -> &'static str {
+    match quantity {
+        SLOPE => "m",
+        quantity if quantity == BANDWIDTHS[0] => "cycles/m",
+        _ => "cycles per unit slope, or per radian on surfaces",
+    }
+}
+
 /// The numbers of a plane: the numbers of its whole spectrum, and each parameter.
 pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
-    let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
+    let own = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
         measured: of["measured"].as_f64(),
@@ -46,18 +55,15 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     };
     let bandwidth = &plane["bandwidth_95"];
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let mut numbers = vec![
-        of(BANDWIDTHS[0], "cycles/m", &bandwidth["rho"], "predicted"),
-        of(
-            BANDWIDTHS[1],
-            "cycles per unit slope, or per radian on surfaces",
-            &bandwidth["nu"],
-            "predicted",
-        ),
-        of(SLOPE, "m", &plane["slope"], "predicted"),
+    let whole = [
+        (BANDWIDTHS[0], &bandwidth["rho"]),
+        (BANDWIDTHS[1], &bandwidth["nu"]),
+        (SLOPE, &plane["slope"]),
     ];
+    let whole = whole.map(|(name, of)| own(name, unit_of(name), of, "predicted"));
+    let mut numbers = Vec::from(whole);
     let parameters = plane["parameters"].as_array().into_iter().flatten();
-    numbers.extend(parameters.map(|p| of(&text(&p["name"]), &text(&p["unit"]), p, "scene")));
+    numbers.extend(parameters.map(|p| own(&text(&p["name"]), &text(&p["unit"]), p, "scene")));
     numbers
 }
 

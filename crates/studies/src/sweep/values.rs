@@ -1,7 +1,7 @@
 //! The values that fields of a scene take in a sweep.
 
 use etendue_field::tidy;
-use etendue_scene::dotted;
+use etendue_scene::{Scene, dotted};
 use etendue_store::{ArgumentStyle, Failure};
 
 /// A field of the scene and its values.
@@ -122,6 +122,19 @@ fn allowed(why: &str, arguments: ArgumentStyle) -> String {
 pub(crate) fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
     number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
+}
+
+/// The value of a field that is a real number. Messages begin with `argument`.
+pub(crate) fn real_value(scene: &Scene, path: &str, argument: String) -> Result<f64, Failure> {
+    let fault = |what: String| Failure::bad_input(format!("{argument}: {what}"));
+    let value = scene.file.value(path).map_err(fault)?;
+    let real = "allowed: fields that are real numbers";
+    let number = value.as_f64();
+    let number = number.ok_or_else(|| fault(format!("the value is {value}; {real}")))?;
+    match value.is_f64() {
+        true => Ok(number),
+        false => Err(fault(format!("{value} is a whole number; {real}"))),
+    }
 }
 
 /// Parses the values of a range from the text before and after the dots.

@@ -1,0 +1,447 @@
+//! Measures the derivative of the slices by a field of a scene, from pairs of runs with the same
+//! random numbers.
+//!
+//! A central difference over a step h has a bias of h²/6 times the third derivative, and noise that
+//! grows as h falls. The derivative is measured with three steps. The bias of each is measured by
+//! the difference to the next, in pairs of batches too, and the largest step is taken at which the
+//! bias is below the noise. Theory is compared over the same step, so bias does not enter.
+
+use crate::fit::{FitData, FitModel, FitPlane, size, spread};
+use crate::sweep::values::{Setting, Sweep, real_value};
+use crate::sweep::{self, FinishedSweep, SweepPoints, SweepRequest};
+use etendue_compare::{Estimate, MIN_DIFFERING, NormalEquations, Residuals, Verdict, sidak};
+use etendue_field::{Complex, Slices, percent, tidy, uncertain};
+use etendue_pipeline::{Leader, Reporter, Work, batches_of_run, load};
+use etendue_report::table;
+use etendue_scene::{RunFile, dotted, unit};
+use etendue_store::Failure;
+use etendue_store::npz::Npz;
+use ndarray::Array3;
+use std::path::Path;
+
+/// Theory is as accurate as this many times the photons of a run need, because pairs have less noise.
+const ACCURACY: u64 = 16;
+
+/// A field by which slices are differentiated, and the largest step of its differences.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DerivedField {
+    /// Path of the field.
+    pub path: String,
+    /// The largest step; `None` for 4 % of the value, or 0.04 if the value is 0.
+    pub step: Option<f64>,
+}
+
+/// The largest step, as a share of the value.
+const FIRST_STEP: f64 = 0.04;
+/// The steps as shares of the largest. At each, the bias is a sixteenth of that before.
+const STEPS: [f64; 3] = [1.0, 0.25, 0.0625];
+/// The bias of a step as a share of its difference to the derivative with the next step, for the
+/// first step, or with the step before, for the others: D(h) − D(h/4) = (1 − 1/16) h²/6 S‴.
+const BIAS: [f64; 3] = [16.0 / 15.0, 1.0 / 15.0, 1.0 / 15.0];
+
+/// The derivative of the slices at a plane, measured with one step.
+#[derive(Clone, Debug)]
+pub struct PlaneDerivative {
+    /// Name of the plane.
+    pub plane: String,
+    /// Half of the difference between the two values of the field.
+    pub step: f64,
+    /// Whether this step is chosen among the steps of its plane.
+    pub is_chosen: bool,
+    /// ‖∂S/∂p‖/‖S‖, in one over the unit of the field.
+    pub size: f64,
+    /// ‖error‖/‖∂S/∂p‖ from the spread of pairs of batches; `None` if too few of them differ.
+    pub noise: Option<f64>,
+    /// ‖bias‖/‖∂S/∂p‖, measured; with one standard error of its square added.
+    pub bias: Option<f64>,
+    /// The measured derivative as a multiple of theory's, by least squares; `None` without theory.
+    pub share: Option<Estimate>,
+    /// The p-value of the hypothesis that theory's difference over the same step is true. `None` if
+    /// predictions have numerical errors that replicates do not show.
+    pub p_value: Option<f64>,
+}
+
+/// A measured derivative.
+#[derive(Debug)]
+pub struct Derivative {
+    /// Path of the field.
+    pub field: String,
+    /// Value of the field.
+    pub value: f64,
+    /// The chosen step of each plane.
+    pub planes: Vec<PlaneDerivative>,
+    /// Fail if theory disagrees at a plane, undecided if a derivative has no errors.
+    pub verdict: Verdict,
+    /// The sweep over the values from which it is measured.
+    pub sweep: FinishedSweep,
+}
+
+/// The name of the table, and of the arrays of a plane.
+const TABLE: &str = "derivative.csv";
+const ARRAYS: &str = "derivative.npz";
+
+impl DerivedField {
+    /// Parses FIELD or FIELD=STEP.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let (path, step) = match text.split_once('=') {
+            None => (text, None),
+            Some((path, step)) => {
+                let step = step.trim().parse().ok();
+                let step = step.filter(|step: &f64| step.is_finite() && *step > 0.0);
+                (
+                    path,
+                    Some(step.ok_or("must be FIELD or FIELD=STEP, with a step above 0")?),
+                )
+            }
+        };
+        Ok(Self {
+            path: dotted(path.trim()),
+            step,
+        })
+    }
+
+    /// The value of the field in a scene, and the request of a sweep over the values from which
+    /// the derivative is measured.
+    pub fn sweep(&self, mut request: SweepRequest) -> Result<(f64, SweepRequest), Failure> {
+        let arguments = request.scene.arguments;
+        let (source, sweeps) = request.settings();
+        if let Some(Sweep { path, .. }) = sweeps.first() {
+            return Err(Failure::bad_input(format!(
+                "{} has several values; allowed beside {}: one value",
+                arguments.with("set", path),
+                arguments.with("derivative", &self.path),
+            )));
+        }
+        let scene = load::scene(&source, |_| ())?;
+        let value = real_value(&scene, &self.path, arguments.with("derivative", &self.path))?;
+        let step = self.step.unwrap_or(FIRST_STEP * size(value));
+        // The steps up to the largest, from low values to high.
+        let below = STEPS.iter().map(|share| -share);
+        let moves = below.chain(STEPS.iter().rev().copied());
+        let values = moves.map(|share| value + share * step).collect();
+        request.set.push(Setting::Sweep(Sweep {
+            path: self.path.clone(),
+            values,
+        }));
+        request.common_seed = true;
+        Ok((value, request))
+    }
+}
+
+/// Measures a derivative; the runs, the table and the arrays are stored in `folder`.
+pub fn derivative(
+    field: &DerivedField,
+    value: f64,
+    (request, points, folder): (&SweepRequest, &SweepPoints, &Path),
+    workers: Option<&Leader<'_>>,
+    reporter: &dyn Reporter,
+) -> Result<Derivative, Failure> {
+    let planes = &points.base.planes;
+    let arrays = planes
+        .iter()
+        .map(|plane| format!("{}/{ARRAYS}", plane.name));
+    let names: Vec<String> = arrays.chain([TABLE.to_owned()]).collect();
+    let sweep = sweep::begin(request, points, folder, &names, workers, reporter)?;
+    let stage = reporter.begin(Work::Stage("measuring derivatives"));
+    let read = |i: usize| {
+        let scene = &points.scenes[i];
+        let batches = batches_of_run(&folder.join(&sweep.found[i].folder), scene)?;
+        FitData::of_measurement(&batches, scene)
+    };
+    let ends = |rung: usize| Ok([read(rung)?, read(2 * STEPS.len() - 1 - rung)?]);
+    let ends: Vec<[FitData; 2]> = (0..STEPS.len()).map(ends).collect::<Result<_, Failure>>()?;
+    let of_point = |i: usize| sweep.found[i].point[0].1;
+    let steps = [0, 1, 2].map(|rung| 0.5 * (of_point(2 * STEPS.len() - 1 - rung) - of_point(rung)));
+    let mut files = Vec::new();
+    let mut all = Vec::new();
+    for (i, plane) in planes.iter().enumerate() {
+        let ladder = Ladder::new(&ends, i, steps);
+        let theory =
+            |rung: usize| theory(field, value, request, &ends[rung][0].planes[i], steps[rung]);
+        let (rungs, bytes) = ladder.judged(points.base.run.seed, &theory)?;
+        files.push((format!("{}/{ARRAYS}", plane.name), bytes));
+        all.extend(rungs);
+    }
+    files.push((TABLE.to_owned(), csv(&field.path, &all)?));
+    drop(stage);
+    let chosen = all.into_iter().filter(|plane| plane.is_chosen);
+    let chosen: Vec<PlaneDerivative> = chosen.collect();
+    Ok(Derivative {
+        field: field.path.clone(),
+        value,
+        verdict: verdict(&chosen, points.base.run.alpha),
+        planes: chosen,
+        sweep: sweep.finish(files, reporter)?,
+    })
+}
+
+/// The derivative at one plane for each step.
+struct Ladder<'a> {
+    plane: &'a FitPlane,
+    steps: [f64; 3],
+    /// ‖S‖ in the middle of the smallest step.
+    norm: f64,
+    derivatives: Vec<Residuals>,
+}
+
+/// Theory's difference over a step, with its replicates.
+struct TheoryDifference {
+    slices: Slices,
+    replicates: Vec<Slices>,
+    /// Whether replicates show all errors of the slices.
+    has_known_errors: bool,
+}
+
+impl<'a> Ladder<'a> {
+    fn new(ends: &'a [[FitData; 2]], i: usize, steps: [f64; 3]) -> Self {
+        let plane = &ends[0][0].planes[i];
+        let middle = ends
+            .last()
+            .map(|[a, b]| &a.planes[i].mean + &b.planes[i].mean);
+        let derivatives = ends.iter().zip(steps).map(|([a, b], step)| {
+            let [a, b] = [a, b].map(|end| end.planes[i].batches.iter().map(|one| one.half.view()));
+            let pairs = Residuals::of_pairs(plane.plane.grid, a, b);
+            pairs.scaled(1.0 / (2.0 * step))
+        });
+        Self {
+            plane,
+            steps,
+            norm: middle.map_or(0.0, |twice| 0.5 * norm(&twice)),
+            derivatives: derivatives.collect(),
+        }
+    }
+
+    /// Each step, and the arrays of the chosen step.
+    fn judged(
+        &self,
+        seed: u64,
+        theory: &dyn Fn(usize) -> Option<TheoryDifference>,
+    ) -> Result<(Vec<PlaneDerivative>, Vec<u8>), Failure> {
+        let theories: Vec<_> = (0..STEPS.len()).map(theory).collect();
+        let each = theories.iter().enumerate();
+        let mut rungs: Vec<_> = each
+            .map(|(k, theory)| self.rung(k, theory.as_ref(), seed))
+            .collect();
+        let is_settled = |rung: &PlaneDerivative| match (rung.bias, rung.noise) {
+            (Some(bias), Some(noise)) => bias <= noise,
+            // Nothing changes with any step, or too few batches differ with smaller steps.
+            _ => true,
+        };
+        let last = STEPS.len() - 1;
+        let chosen = rungs.iter().position(is_settled).unwrap_or(last);
+        rungs[chosen].is_chosen = true;
+        let grid = &self.plane.plane.grid;
+        let of = &self.derivatives[chosen];
+        let npz = Npz::default()
+            .add_half_axes(grid)?
+            .add("derivative", &of.mean())?
+            .add("sigma", &of.variance().mapv(f64::sqrt))?
+            .add("step", &ndarray::arr0(self.steps[chosen]))?;
+        let bytes = match &theories[chosen] {
+            Some(theory) => npz.add("predicted", &theory.slices.half)?.bytes()?,
+            None => npz.bytes()?,
+        };
+        Ok((rungs, bytes))
+    }
+
+    fn rung(&self, k: usize, theory: Option<&TheoryDifference>, seed: u64) -> PlaneDerivative {
+        let of = &self.derivatives[k];
+        let has_errors = of.differing() >= MIN_DIFFERING;
+        let variance = of.variance();
+        let length = norm(&of.mean());
+        let beside = &self.derivatives[if k == 0 { 1 } else { k - 1 }];
+        let apart = of.minus(beside);
+        let (square, error) = apart.squared();
+        let bias = BIAS[k] * (square.max(0.0) + error).sqrt();
+        let mut share = None;
+        let mut p_value = None;
+        if let Some(theory) = theory.filter(|_| has_errors) {
+            let batches = of.slices();
+            let batches: Vec<&Slices> = batches.iter().collect();
+            let residuals =
+                Residuals::between_samples(&batches, &theory.slices, &theory.replicates);
+            share = theory.share(&residuals);
+            p_value = residuals.p_value(seed).filter(|_| theory.has_known_errors);
+        }
+        PlaneDerivative {
+            plane: self.plane.plane.name.clone(),
+            step: self.steps[k],
+            is_chosen: false,
+            size: length / self.norm,
+            noise: has_errors.then(|| variance.sum().sqrt() / length),
+            bias: has_errors.then(|| bias / length),
+            share,
+            p_value,
+        }
+    }
+}
+
+fn norm(half: &Array3<Complex>) -> f64 {
+    half.iter()
+        .map(|value| value.norm_sqr())
+        .sum::<f64>()
+        .sqrt()
+}
+
+impl TheoryDifference {
+    /// The multiple of the slices with which residuals would vanish: 1 + ⟨T, r⟩/⟨T, T⟩ over the
+    /// independent frequencies. ⟨T, T⟩ would be too large by the noise of T, which the spread of the
+    /// replicates tells and which is taken off. `None` if T is mostly noise.
+    fn share(&self, residuals: &Residuals) -> Option<Estimate> {
+        let one = Array3::from_elem(self.slices.half.raw_dim(), 1.0);
+        let product =
+            |of: &Array3<Complex>| NormalEquations::new(residuals, &one, std::slice::from_ref(of));
+        let noise = match self.replicates.len() {
+            0 => 0.0,
+            _ => {
+                let each = self.replicates.iter().map(|one| one.half.clone());
+                let spread = Residuals::of(self.slices.grid, each.collect()).variance();
+                product(&spread.mapv(|square| Complex::from(square.sqrt()))).information[[0, 0]]
+            }
+        };
+        let NormalEquations {
+            information,
+            scores,
+        } = product(&self.slices.half);
+        let square = information[[0, 0]] - noise;
+        (square > noise).then(|| Estimate {
+            value: 1.0 + (scores.sum() / scores.len() as f64 + noise) / square,
+            error: spread(&scores)[[0, 0]].sqrt() / square,
+            batches: scores.len(),
+        })
+    }
+}
+
+/// Theory's central difference at a plane; `None` if theory has no prediction there.
+fn theory(
+    field: &DerivedField,
+    value: f64,
+    request: &SweepRequest,
+    plane: &FitPlane,
+    step: f64,
+) -> Option<TheoryDifference> {
+    let point = |value: f64| vec![(field.path.clone(), value)];
+    let (source, _) = request.settings();
+    let options = |run: &mut RunFile| {
+        run.photons = ACCURACY.saturating_mul(request.photons.unwrap_or(run.photons));
+    };
+    let scene_at = |values: &[f64]| sweep::scene_at(&source, &point(values[0]), options);
+    let model = FitModel {
+        scene_at: &scene_at,
+        fields: std::slice::from_ref(&field.path),
+        planes: std::slice::from_ref(plane),
+    };
+    let end = |by: f64| model.predict(&[value + by], 1.0).ok()?.pop();
+    let [a, b] = [end(-step)?, end(step)?];
+    let scale = Complex::from(0.5 / step);
+    let between = |a: &Slices, b: &Slices| Slices {
+        grid: b.grid,
+        half: (&b.half - &a.half) * scale,
+    };
+    let counts = [&a, &b].map(|end| end.replicates.len());
+    let pairs = a.replicates.iter().zip(&b.replicates);
+    Some(TheoryDifference {
+        slices: between(&a.slices, &b.slices),
+        replicates: pairs.map(|(a, b)| between(a, b)).collect(),
+        has_known_errors: counts[0] == counts[1]
+            && (counts[0] > 0 || a.error().or(b.error()).is_none()),
+    })
+}
+
+fn verdict(planes: &[PlaneDerivative], alpha: f64) -> Verdict {
+    let p_values = || planes.iter().filter_map(|plane| plane.p_value);
+    let level = sidak(alpha, p_values().count());
+    if p_values().any(|p| p < level) {
+        Verdict::Fail
+    } else if planes
+        .iter()
+        .any(|plane| plane.noise.is_none() && plane.size > 0.0)
+    {
+        Verdict::Undecided
+    } else {
+        Verdict::Pass
+    }
+}
+
+const HEADER: [&str; 10] = [
+    "field",
+    "plane",
+    "step",
+    "chosen",
+    "size",
+    "noise",
+    "bias",
+    "share_of_theory",
+    "error_of_share",
+    "p_value",
+];
+
+/// The table with all digits: a row for each plane and each step.
+fn csv(field: &str, all: &[PlaneDerivative]) -> Result<Vec<u8>, Failure> {
+    let digits = |number: Option<f64>| number.map_or(String::new(), |x| format!("{x:?}"));
+    let rows = all.iter().map(|of| {
+        vec![
+            field.to_owned(),
+            of.plane.clone(),
+            digits(Some(of.step)),
+            of.is_chosen.to_string(),
+            digits(Some(of.size)),
+            digits(of.noise),
+            digits(of.bias),
+            digits(of.share.map(|share| share.value)),
+            digits(of.share.map(|share| share.error)),
+            digits(of.p_value),
+        ]
+    });
+    table::csv(&HEADER.map(str::to_owned), rows)
+}
+
+impl Derivative {
+    /// The table for a terminal.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let unit = unit(&self.field);
+        let [of_step, of_size] = match unit {
+            "" => [String::new(), String::new()],
+            unit => [format!(" [{unit}]"), format!(" [1/{unit}]")],
+        };
+        let header = [
+            "plane".to_owned(),
+            format!("step{of_step}"),
+            format!("‖∂S‖/‖S‖{of_size}"),
+            "noise".to_owned(),
+            "bias".to_owned(),
+            "times theory's".to_owned(),
+            "p".to_owned(),
+        ];
+        let none = || "–".to_owned();
+        let rows = self.planes.iter().map(|of| {
+            let share = of.share.map(|share| uncertain(share.value, share.error));
+            vec![
+                of.plane.clone(),
+                tidy(of.step),
+                format!("{:.4}", of.size),
+                of.noise.map_or_else(none, |noise| percent(noise, 3)),
+                of.bias.map_or_else(none, |bias| percent(bias, 3)),
+                share.unwrap_or_else(none),
+                of.p_value.map_or_else(none, |p| format!("{p:.5}")),
+            ]
+        });
+        let mut lines = vec![
+            format!("∂S/∂({}) at {}:", self.field, tidy(self.value)),
+            String::new(),
+        ];
+        lines.extend(table::aligned(
+            std::iter::once(header.to_vec()).chain(rows).collect(),
+        ));
+        let few = self
+            .planes
+            .iter()
+            .filter(|of| of.noise.is_none() && of.size > 0.0);
+        lines.extend(few.map(|of| {
+            let name = &of.plane;
+            format!("{name}: too few batches differ to give errors: more photons are needed")
+        }));
+        lines.join("\n")
+    }
+}
