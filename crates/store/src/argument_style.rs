@@ -33,6 +33,16 @@ impl ArgumentStyle {
         }
     }
 
+    /// The text for one value of an argument that is repeated on the command line, and that is a
+    /// collection with a name in the plural in Python.
+    #[must_use]
+    pub fn with_one(self, name: &str, value: impl Display) -> String {
+        match self {
+            Self::Command => self.with(name, value),
+            Self::Python => self.with(&format!("{name}s"), value),
+        }
+    }
+
     /// The text for the argument that sets a field of a scene.
     #[must_use]
     pub fn set(self, path: &str, value: &str) -> String {

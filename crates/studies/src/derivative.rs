@@ -137,6 +137,18 @@ pub fn derivative(
     reporter: &dyn Reporter,
 ) -> Result<Derivative, Failure> {
     let planes = &points.base.planes;
+    for (plane, other) in points
+        .scenes
+        .iter()
+        .flat_map(|at| planes.iter().zip(&at.planes))
+    {
+        if plane.grid != other.grid {
+            return Err(Failure::bad_input(format!(
+                "the frequencies of plane {} depend on {}, so slices have no derivative by it",
+                plane.name, field.path
+            )));
+        }
+    }
     let arrays = planes
         .iter()
         .map(|plane| format!("{}/{ARRAYS}", plane.name));

@@ -1,7 +1,7 @@
 //! The prediction of a light field.
 
 use crate::geometry::Matrix;
-use etendue_field::{Projection, Slices};
+use etendue_field::{Complex, Projection, Slices};
 
 /// The mean of sums over independent nets.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +10,26 @@ pub struct NetMean {
     pub slices: Slices,
     /// ‖σ‖/‖F‖ with the standard error σ of the mean F.
     pub error: f64,
+}
+
+impl NetMean {
+    /// The largest share of noise in the power of a derivative from which a parameter is measured.
+    const MAX_NOISE: f64 = 0.5;
+
+    /// A derivative of the length that it would have without noise: D (1 − ‖σ‖²/‖D‖²).
+    ///
+    /// A measured change of a parameter is ⟨D, r⟩/⟨D, D⟩ with the residual r, and noise makes ⟨D, D⟩
+    /// too large. Without this factor, the change and its error would be too small by as much. The
+    /// derivative is zero, so that the parameter is not determined, if most of it is noise.
+    pub(crate) fn without_noise(self) -> Slices {
+        let noise = self.error * self.error;
+        let mut slices = self.slices;
+        if noise > Self::MAX_NOISE {
+            return Slices::zeros(slices.grid);
+        }
+        slices.half *= Complex::from(1.0 - noise);
+        slices
+    }
 }
 
 /// The prediction of a light field.

@@ -87,13 +87,13 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3726,
-        "predictions of other programs are read, and written; a method; measurements of other programs are read; runs of scenes with pictures give their batches",
+        3736,
+        "predictions of other programs are read, and written; a method; measurements of other programs are read; runs of scenes with pictures give their batches; names of repeated arguments",
     ),
     (
         "studies",
         4009,
-        6197,
+        6213,
         "differences of neighbouring points; `fit`, and its plan; derivatives from pairs",
     ),
     (
@@ -114,7 +114,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_486,
+        69_526,
         "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds",
     ),
 ];

@@ -7,6 +7,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::{ArgumentStyle, Failure, MEASUREMENT, SUMMARY, theory};
 use ndarray::Array3;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// The smallest number of replicates from which errors and p are computed.
@@ -114,7 +115,7 @@ impl FitData {
         if let Some(unknown) = names.iter().find(|name| !own.contains(name)) {
             return Err(Failure::bad_input(format!(
                 "{}: not measured; allowed: {}",
-                arguments.with("plane", unknown),
+                arguments.with_one("plane", unknown),
                 own.join(", ")
             )));
         }
@@ -160,9 +161,12 @@ fn paired(measured: &[VirtualPlane], scene: &Scene) -> Result<Vec<(usize, usize)
     for (i, index) in &pairs {
         let (measured, own) = (&measured[*i], &scene.planes[*index]);
         if measured.grid != own.grid || measured.window != own.window {
+            let text = |of: &VirtualPlane| json!({"window": of.window, "frequencies": of.grid});
             return Err(Failure::bad_input(format!(
-                "plane {}: the measurement has another window, or other frequencies, than the scene",
-                own.name
+                "plane {}: the measurement has another window, or other frequencies, than the scene: {}, not {}",
+                own.name,
+                text(measured),
+                text(own)
             )));
         }
     }

@@ -53,7 +53,7 @@ impl FitRequest {
         let values: Vec<f64> = values.collect::<Result<_, _>>()?;
         let known = |path: &String| self.free.contains(path);
         if let Some((path, _)) = self.ranges.iter().find(|(path, _)| !known(path)) {
-            let range = self.scene.arguments.with("range", path);
+            let range = arguments.with_one("range", path);
             return Err(Failure::bad_input(format!("{range} is not a free field")));
         }
         let ranges = self.free.iter().zip(&values).map(|(path, value)| {

@@ -50,13 +50,13 @@ impl RayBudget {
     }
 }
 
-/// Number of independent nets for derivatives, which need no error estimate.
+/// Number of independent nets for derivatives. Their spread gives the noise of each.
 pub(super) const OF_DERIVATIVES: usize = 8;
 /// Minimum and maximum number of nodes in each net by which derivatives are computed.
 pub(super) const DERIVATIVE_NODES: [u32; 2] = [1 << 11, 1 << 15];
 /// Maximum number of nodes for derivatives, times the number of parameters, as a multiple of the
 /// nodes of the prediction. Each node has two rays for each parameter.
-const FOR_DERIVATIVES: f64 = 0.5;
+const FOR_DERIVATIVES: f64 = 2.0;
 
 /// How many derivatives a budget of rays includes, if they take half of the nodes that
 /// derivatives may take. With fewer nodes for each, the noise of derivatives would make stated

@@ -33,8 +33,7 @@ pub const REPLICATES: usize = 32;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
 /// The relative error ‖error‖/‖D‖ at which a derivative D is accurate enough. With such a
-/// derivative, the measured value of a parameter is wrong by about the square of this error, times
-/// the difference between the measured value and the scene's value.
+/// derivative, a hundredth of its power is noise.
 const DERIVATIVE_ERROR: f64 = 0.1;
 /// Number of nodes of a net at which the error of a derivative is first estimated.
 const FIRST_OF_DERIVATIVES: u32 = 1 << 9;

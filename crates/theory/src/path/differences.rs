@@ -3,7 +3,7 @@
 use super::{AtMask, MaskCrossings, Observed, PreparedPath};
 use crate::model::{Over, ShiftedModels};
 use crate::nets::{self, DIMENSIONS, Integrand, RayNode};
-use crate::predicted::Predicted;
+use crate::predicted::{NetMean, Predicted};
 
 /// A light field of a path. Its rays are functions of a point of the unit cube.
 pub(super) trait DrawnField: Sync {
@@ -72,12 +72,13 @@ impl<'a, F: DrawnField> Differences<'a, F> {
         }
     }
 
-    /// A prediction with the differences, which are accurate to about a per cent.
+    /// A prediction with the differences, which are accurate to about a per cent if the budget
+    /// suffices, and have the length that they would have without noise.
     pub(super) fn complete(&self, found: Predicted, over: Over<'_>) -> Predicted {
         let mut means = nets::means(self, (over.0, over.1), &found).into_iter();
         Predicted {
             to_first_order: self.field.has_chain().then(|| means.next()).flatten(),
-            derivatives: means.map(|mean| mean.slices).collect(),
+            derivatives: means.map(NetMean::without_noise).collect(),
             ..found
         }
     }

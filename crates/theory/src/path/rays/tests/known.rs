@@ -190,6 +190,44 @@ fn derivatives_of_masks_are_those_of_closed_forms() {
     }
 }
 
+/// Few rays meet the edge of a small disc. Noise would make a derivative too long, so that a change of
+/// the parameter is measured too small.
+#[test]
+fn noise_does_not_lengthen_derivatives() {
+    let (mut shares, mut noises) = (Vec::new(), Vec::new());
+    for i in -4..=4 {
+        let mask = opaque(vec![disc([0.02 * f64::from(i), 0.01], 0.014)]);
+        let system = behind(&mask);
+        let view = view(&system, &after(&system, 1.5));
+        let parameters = view.parameters();
+        let found = derivatives(&view, &parameters, RayBudget::new(1e4, 1e-3));
+        let names = parameters.iter().map(|parameter| view.name(*parameter));
+        let found: Vec<(String, Slices)> = names.zip(found).collect();
+        for (name, known) in by_closed_form(&mask) {
+            let (_, own) = found.iter().find(|(own, _)| *own == name).unwrap();
+            // Most of the derivative may be noise; then there is none.
+            if own.is_dark() {
+                continue;
+            }
+            let along = |of: &Slices| -> f64 {
+                let cells = of.half.iter().zip(&own.half);
+                cells.map(|(a, b)| a.re * b.re + a.im * b.im).sum()
+            };
+            shares.push(along(&known) / along(own));
+            noises.push(own.relative_difference(&known));
+        }
+    }
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    assert!(shares.len() > 10 && mean(&noises) > 0.4, "{noises:?}");
+    // A change of a parameter is measured as this share of itself. Without the factor of
+    // `NetMean::without_noise`, the mean is 0.75.
+    let error_of_mean = 0.03; // the shares spread by 0.13
+    assert!(
+        (mean(&shares) - 1.0).abs() < 3.0 * error_of_mean,
+        "{shares:?}"
+    );
+}
+
 /// An obstacle across the central ray's leg is a mask. Of the sizes and the positions that a mask
 /// has, an obstacle has the same derivatives.
 #[test]
@@ -279,7 +317,9 @@ fn by_closed_form(mask: &Mask) -> Vec<(String, Slices)> {
     let mut parameters = chain.parameters();
     parameters.retain(|parameter| parameter.mask().is_some());
     let names = parameters.iter().map(|parameter| chain.name(*parameter));
-    names.zip(derivatives(&chain, &parameters)).collect()
+    names
+        .zip(derivatives(&chain, &parameters, BUDGET))
+        .collect()
 }
 
 fn behind(mask: &Mask) -> PathSystem {
@@ -293,7 +333,7 @@ fn by_rays(system: &PathSystem, names: &[&str]) -> Slices {
     let view = view(system, &after(system, 1.5));
     let mut parameters = view.parameters();
     parameters.retain(|parameter| names.contains(&view.name(*parameter).as_str()));
-    let each = derivatives(&view, &parameters).into_iter();
+    let each = derivatives(&view, &parameters, BUDGET).into_iter();
     each.reduce(|sum, one| Slices {
         half: sum.half + &one.half,
         ..sum
@@ -301,11 +341,11 @@ fn by_rays(system: &PathSystem, names: &[&str]) -> Slices {
     .unwrap()
 }
 
-fn derivatives(model: &impl Model, parameters: &[Parameter]) -> Vec<Slices> {
+fn derivatives(model: &impl Model, parameters: &[Parameter], budget: RayBudget) -> Vec<Slices> {
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let grid = grid(2, [0.3, 0.3]);
     let over = (&window, &grid, &ProjectionGrid::new(&window, 32));
-    model.predict(parameters, over, BUDGET).derivatives
+    model.predict(parameters, over, budget).derivatives
 }
 
 #[test]
