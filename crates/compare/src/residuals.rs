@@ -150,6 +150,14 @@ impl Residuals {
         self.without(&self.forgiven(prediction, error))
     }
 
+    /// The differences of two measurements without what the error of the fast transform may cause;
+    /// `measured` is one of them, with the same axes.
+    #[must_use]
+    pub fn within_error_of(&self, measured: &Array3<Complex>) -> Self {
+        let (grid, half) = (self.grid, measured.clone());
+        self.within_error(&Slices { grid, half }, 0.0)
+    }
+
     /// The residuals with a part of their mean subtracted from each.
     #[must_use]
     pub fn without(&self, part: &Array3<Complex>) -> Self {

@@ -114,7 +114,7 @@ impl TwoSamples {
         let noise = differences.sum(&variance, &variance, |v, _| *v);
         Self {
             chi2_per_dof: differences.chi2_per_dof(&variance),
-            p_value: differences.p_value(seed),
+            p_value: differences.within_error_of(&a.mean).p_value(seed),
             p_shared: None,
             difference: sums.relative(sums.difference),
             noise: sums.relative(noise),

@@ -273,7 +273,9 @@ impl<'a> Ladder<'a> {
             let residuals =
                 Residuals::between_samples(&batches, &theory.slices, &theory.replicates);
             share = theory.share(&residuals);
-            p_value = residuals.p_value(seed).filter(|_| theory.has_known_errors);
+            let measured = &self.plane.mean / Complex::from(2.0 * self.steps[k]);
+            let p = residuals.within_error_of(&measured).p_value(seed);
+            p_value = p.filter(|_| theory.has_known_errors);
         }
         PlaneDerivative {
             plane: self.plane.plane.name.clone(),

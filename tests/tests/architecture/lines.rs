@@ -19,8 +19,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "compare",
         2927,
-        3434,
-        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information; residuals that are scaled and subtracted, and paired changes of bandwidths",
+        3442,
+        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information; residuals that are scaled and subtracted, and paired changes of bandwidths; differences within the error of the transform",
     ),
     (
         "explorer",
@@ -93,8 +93,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "studies",
         4009,
-        6213,
-        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs",
+        6250,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields",
     ),
     (
         "theory",

@@ -109,7 +109,8 @@ impl FitData {
         })
     }
 
-    /// The planes of these names, or all planes if there are no names.
+    /// The planes of these names, or all planes if there are no names, that photons of each batch
+    /// reach: the spread of a plane with dark batches tells no error.
     pub fn at(mut self, names: &[String], arguments: ArgumentStyle) -> Result<Self, Failure> {
         let own: Vec<String> = self.planes.iter().map(|of| of.plane.name.clone()).collect();
         if let Some(unknown) = names.iter().find(|name| !own.contains(name)) {
@@ -119,9 +120,16 @@ impl FitData {
                 own.join(", ")
             )));
         }
-        self.planes
-            .retain(|of| names.is_empty() || names.contains(&of.plane.name));
-        Ok(self)
+        self.planes.retain(|of| {
+            let is_named = names.is_empty() || names.contains(&of.plane.name);
+            is_named && !of.batches.iter().any(Slices::is_dark)
+        });
+        match self.planes.is_empty() {
+            true => Err(Failure::bad_input(
+                "each plane has batches without photons: more photons are needed",
+            )),
+            false => Ok(self),
+        }
     }
 }
 

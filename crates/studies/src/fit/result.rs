@@ -122,7 +122,8 @@ pub fn fit(
         _ if rivals > 1 => Some(format!(
             "{rivals} distinct minima agree with the measurement"
         )),
-        _ => (!lowest.has_converged).then(|| "the search has not converged".to_owned()),
+        _ => without_value(model.fields, lowest)
+            .or_else(|| (!lowest.has_converged).then(|| "the search has not converged".to_owned())),
     };
     let verdict = match (accepts(best), &undecided) {
         (false, _) => Verdict::Fail,
@@ -153,6 +154,20 @@ pub fn fit(
     })
 }
 
+/// A field may be any number if its error exceeds its value this many times.
+const MAX_ERROR: f64 = 100.0;
+
+/// Names a field whose error says that it may be any number.
+fn without_value(fields: &[String], minimum: &Minimum) -> Option<String> {
+    let errors = minimum.information.diag().mapv(|of| 1.0 / of.sqrt());
+    let mut each = fields.iter().zip(&minimum.values).zip(&errors);
+    let ((field, _), error) =
+        each.find(|((_, value), error)| **error > MAX_ERROR * size(**value))?;
+    Some(format!(
+        "the spectra tell {field} only to about ± {error:.0e}"
+    ))
+}
+
 fn rows(of: &Array2<f64>) -> Vec<Vec<f64>> {
     of.outer_iter().map(|row| row.to_vec()).collect()
 }
@@ -176,6 +191,8 @@ impl JudgedMinimum {
         };
         if let Some(covariance) = &mut judged.covariance {
             *covariance += &numerical(model, minimum);
+            let column = minimum.left.view().insert_axis(Axis(1));
+            *covariance += &column.dot(&column.t());
         }
         judged
     }

@@ -15,6 +15,9 @@ const MAX_STEPS: usize = 40;
 /// A search ends when χ² is expected to fall by less, if noise at all frequencies is independent.
 /// The values are then within a thirtieth of their errors.
 const SMALL_FALL: f64 = 1e-3;
+/// A search has converged if it ends where χ² is expected to fall by less: the values are then within
+/// one of their errors, to which the expected step is added.
+const MAX_FALL: f64 = 1.0;
 /// Minima are the same if χ² between them rises by less.
 const SAME: f64 = 1.0;
 /// The damping of the first step, as a share of the information (Marquardt 1963), its factor after
@@ -43,6 +46,9 @@ pub(super) struct Minimum {
     pub(super) at: Linearised,
     /// The steps of the finite differences of a next linearisation.
     pub(super) steps: Vec<f64>,
+    /// The step from the values to where the minimum is expected: χ² did not fall along it, because
+    /// of the noise of predictions.
+    pub(super) left: Array1<f64>,
     pub(super) has_converged: bool,
 }
 
@@ -187,13 +193,17 @@ fn descended(
             damping *= DAMPING_FACTOR;
         };
         let Some((moved, there)) = next else {
+            let left = solved(&information, &scores).map(|step| step.index_axis_move(Axis(1), 0));
+            let left = left.unwrap_or_else(|| Array1::zeros(values.len()));
+            let is_near = left.dot(&information.dot(&left)) < MAX_FALL;
             return Ok(Minimum {
                 values,
                 chi2,
                 information,
                 at,
                 steps: differences,
-                has_converged: damping <= 1.0 && rounds < MAX_STEPS,
+                left,
+                has_converged: is_near && rounds < MAX_STEPS,
             });
         };
         values = moved;
