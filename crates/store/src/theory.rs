@@ -62,14 +62,9 @@ pub fn parse(
     planes: &[VirtualPlane],
 ) -> Result<Vec<Prediction>, Failure> {
     let mut file = opened(path, bytes, planes)?;
-    let each = planes.iter().map(|plane| {
-        let mut arrays = TheoryArrays {
-            file: &mut file,
-            plane,
-        };
-        arrays.prediction(path)
-    });
-    each.collect()
+    let each = planes.iter();
+    each.map(|plane| TheoryArrays::new(&mut file, plane).prediction(path))
+        .collect()
 }
 
 /// A plane that another program has measured, in the form of a prediction.
@@ -93,10 +88,7 @@ pub fn measured(path: &Path, planes: &[VirtualPlane]) -> Result<Vec<MeasuredArra
     };
     let found = planes.iter().enumerate().filter(|(_, plane)| is_in(plane));
     let found = found.map(|(i, plane)| {
-        let mut arrays = TheoryArrays {
-            file: &mut file,
-            plane,
-        };
+        let mut arrays = TheoryArrays::new(&mut file, plane);
         Ok(MeasuredArrays {
             plane: i,
             prediction: arrays.prediction(path)?,
@@ -179,7 +171,11 @@ struct TheoryArrays<'a> {
     plane: &'a VirtualPlane,
 }
 
-impl TheoryArrays<'_> {
+impl<'a> TheoryArrays<'a> {
+    fn new(file: &'a mut NpzFile, plane: &'a VirtualPlane) -> Self {
+        Self { file, plane }
+    }
+
     fn prediction(&mut self, path: &Path) -> Result<Prediction, Failure> {
         self.check_axes()?;
         let plane = self.plane;

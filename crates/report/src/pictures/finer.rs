@@ -6,6 +6,7 @@
 //! values. The weights follow from K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W². K is the covariance between
 //! frequencies of white noise that is multiplied by the window.
 
+use etendue_compare::solved;
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
@@ -15,6 +16,9 @@ const SMOOTH: usize = 160;
 /// The given values must determine an intermediate value: at most this share of its variance may
 /// remain.
 const OPEN: f64 = 0.01;
+/// The number added to the diagonal of a covariance, because neighbouring frequencies are nearly
+/// dependent.
+const RIDGE: f64 = 1e-8;
 
 /// The weights of a plane's frequencies that give values at finer frequencies.
 pub(super) struct Finer {
@@ -187,12 +191,14 @@ fn weights(
         reason = "the number of parts is small and odd"
     )]
     let parts = parts as usize;
-    let factor = Cholesky::new(count, |i, j| apart[parts * i.abs_diff(j)]);
+    let matrix = Array2::from_shape_fn((count, count), |(i, j)| {
+        apart[parts * i.abs_diff(j)] + if i == j { RIDGE } else { 0.0 }
+    });
     // The given frequency i is the finer frequency number parts · i + (parts − 1)/2.
     let known = Array2::from_shape_fn((count, to.count()), |(i, finer)| {
         apart[finer.abs_diff(parts * i + parts / 2)]
     });
-    let weights = factor.solve(known.clone());
+    let weights = solved(&matrix, &known)?;
     let explained = (&weights * &known).sum_axis(Axis(0));
     let mut between = explained
         .iter()
@@ -200,51 +206,6 @@ fn weights(
         .take(parts * (count - 1) + 1);
     let is_determined = between.all(|explained| *explained >= 1.0 - OPEN);
     is_determined.then(|| Some(weights.reversed_axes().as_standard_layout().into_owned()))
-}
-
-/// The factor L of a symmetric matrix A = L Lᵀ.
-struct Cholesky(Array2<f64>);
-
-impl Cholesky {
-    /// The number added to the diagonal, because neighbouring frequencies are nearly dependent.
-    const RIDGE: f64 = 1e-8;
-
-    fn new(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let mut l = Array2::<f64>::zeros((count, count));
-        for i in 0..count {
-            for j in 0..=i {
-                let sum: f64 = (0..j).map(|k| l[[i, k]] * l[[j, k]]).sum();
-                l[[i, j]] = if i == j {
-                    (entry(i, i) + Self::RIDGE - sum).max(Self::RIDGE).sqrt()
-                } else {
-                    (entry(i, j) - sum) / l[[j, j]]
-                };
-            }
-        }
-        Self(l)
-    }
-
-    /// A⁻¹ B for the matrix B, `right`.
-    fn solve(&self, mut right: Array2<f64>) -> Array2<f64> {
-        let (l, count) = (&self.0, right.nrows());
-        for i in 0..count {
-            let (above, mut below) = right.view_mut().split_at(Axis(0), i);
-            let mut row = below.row_mut(0);
-            for (k, earlier) in above.outer_iter().enumerate() {
-                row.scaled_add(-l[[i, k]], &earlier);
-            }
-            row /= l[[i, i]];
-        }
-        for i in (0..count).rev() {
-            let (mut above, below) = right.view_mut().split_at(Axis(0), i + 1);
-            let mut row = above.row_mut(i);
-            for (k, later) in (i + 1..).zip(below.outer_iter()) {
-                row.scaled_add(-l[[k, i]], &later);
-            }
-            row /= l[[i, i]];
-        }
-        right
-    }
 }
 
 /// The product A B. The sum is written out, because matrix products of the array library
