@@ -93,8 +93,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "studies",
         4009,
-        6250,
-        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields",
+        6254,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search",
     ),
     (
         "theory",

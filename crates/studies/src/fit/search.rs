@@ -163,7 +163,7 @@ fn descended(
         let next = loop {
             let mut damped = information.clone();
             damped.diag_mut().mapv_inplace(|of| of * (1.0 + damping));
-            let step = solved(&damped, &scores).map(|step| step.index_axis_move(Axis(1), 0));
+            let step = step_of(&damped, &scores);
             let fall = step
                 .as_ref()
                 .map_or(0.0, |step| step.dot(&information.dot(step)));
@@ -193,8 +193,7 @@ fn descended(
             damping *= DAMPING_FACTOR;
         };
         let Some((moved, there)) = next else {
-            let left = solved(&information, &scores).map(|step| step.index_axis_move(Axis(1), 0));
-            let left = left.unwrap_or_else(|| Array1::zeros(values.len()));
+            let left = step_of(&information, &scores).unwrap_or(Array1::zeros(values.len()));
             let is_near = left.dot(&information.dot(&left)) < MAX_FALL;
             return Ok(Minimum {
                 values,
@@ -210,6 +209,11 @@ fn descended(
         at = model.linearised(&values, there, &differences, share)?;
         rounds += 1;
     }
+}
+
+/// The step that solves normal equations; `None` if they are singular.
+fn step_of(information: &Array2<f64>, scores: &Array2<f64>) -> Option<Array1<f64>> {
+    Some(solved(information, scores)?.index_axis_move(Axis(1), 0))
 }
 
 /// Fails if the spectrum does not depend on a field.
