@@ -97,6 +97,13 @@ fn points_have_one_seed_where_that_is_asked_for() {
     }
     // The light has no blocker before it, so it is the same at all points.
     assert_eq!(first["noise"], "0.0");
+    // Spectra at other frequencies are no pairs.
+    passes(
+        path,
+        "sweep small.ron --photons 4096 --out f --common-seed --set frequencies.rho.max=5,6",
+    );
+    let unlike = rows(&path.join("f/differences.csv"));
+    assert!(unlike.len() == 2 && unlike.iter().all(|row| row["change"].is_empty()));
     // If the seed is swept, the values of the sweep are the seeds of the points.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
     passes(path, line);

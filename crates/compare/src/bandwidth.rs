@@ -8,7 +8,8 @@ use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::PlanarLobe;
 
 /// The changes of the bandwidths along ρ and ν and of the shear slope of plane `index` from `a` to
-/// `b`, whose batches have the same random numbers, with their standard errors.
+/// `b`, whose batches have the same random numbers, with their standard errors. Spectra at different
+/// frequencies have none.
 ///
 /// # Errors
 /// Returns an error if a measurement has too few batches.
@@ -17,6 +18,9 @@ pub fn paired_changes(
     index: usize,
 ) -> Result<[Option<Uncertain>; 3], TooFewBatches> {
     let grid = &a.planes()[index].grid;
+    if b.planes()[index].grid != *grid {
+        return Ok([None; 3]);
+    }
     let [a, b] = [CrossPower::new(a, index)?, CrossPower::new(b, index)?];
     Ok([
         a.bandwidth_change(&b, Along::Rho),

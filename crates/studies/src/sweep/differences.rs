@@ -84,6 +84,7 @@ impl PointDifferences {
         for (i, plane) in planes.enumerate() {
             let mut first = vec![from.clone(), to.clone(), cell(plane, "name")];
             first.extend(HEADER[3..9].iter().map(|key| cell(plane, key)));
+            let before = self.rows.len();
             let changes = paired_changes(measured, i).map_err(Failure::cannot_run)?;
             let names = [BANDWIDTHS[0], BANDWIDTHS[1], SLOPE];
             for (name, change) in names.into_iter().zip(changes) {
@@ -108,6 +109,10 @@ impl PointDifferences {
             let parameters = plane["parameters"].as_array().into_iter().flatten();
             let parameters = parameters.map(|of| [first.clone(), of_parameter(of).into()].concat());
             self.rows.extend(parameters);
+            if self.rows.len() == before {
+                let none = HEADER[9..].iter().map(|_| String::new());
+                self.rows.push([first, none.collect()].concat());
+            }
         }
         Ok(())
     }
