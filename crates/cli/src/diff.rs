@@ -11,6 +11,11 @@ use etendue_store::output::OutputFile;
 /// Runs `etendue diff`; returns the exit code.
 pub(crate) fn diff(args: &DiffArgs) -> Result<u8, Failure> {
     let diff = Diff::read([&args.a, &args.b], args.alpha)?;
+    if let Some(why) = diff.unpaired().filter(|_| args.pairs) {
+        return Err(Failure::bad_input(format!(
+            "--pairs: the results are not compared in pairs, because {why}"
+        )));
+    }
     if let Some(path) = &args.draw {
         let bytes = diff.drawn(path)?;
         let kind = SealKind::of(path).unwrap_or(SealKind::Png);

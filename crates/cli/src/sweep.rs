@@ -10,7 +10,7 @@ use etendue_compare::Verdict;
 use etendue_pipeline::Leader;
 use etendue_report::table::aligned;
 use etendue_store::Failure;
-use etendue_studies::derivative::derivative;
+use etendue_studies::derivative::{beyond_range, derivative};
 use etendue_studies::sweep::{FinishedSweep, SweepPoints, run};
 
 /// The maximum number of undecided planes whose reasons are printed.
@@ -32,7 +32,10 @@ pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Resu
             Ok::<_, Failure>((field, value))
         });
         let field = field.transpose()?;
-        let all = SweepPoints::read(&request)?;
+        let all = SweepPoints::read(&request).map_err(|failure| match field {
+            Some((field, _)) => beyond_range(field, failure),
+            None => failure,
+        })?;
         let kind = if field.is_some() {
             "derivative"
         } else {

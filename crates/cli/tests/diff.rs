@@ -151,6 +151,13 @@ fn pairs_show_changes_below_the_noise() {
         0,
         &[seeds, "same: nothing differs beyond noise"],
     );
+    let refused = loud(path, "diff --pairs a other");
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        message.contains("because the seeds are 1 and 2"),
+        "{message}"
+    );
     let none = "pairs: no, because plain has no batches (run it with --save batches)";
     found(
         &folder,

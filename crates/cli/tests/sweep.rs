@@ -152,6 +152,13 @@ fn a_derivative_is_that_of_theory_over_the_largest_step_without_bias() {
     );
     let allowed = "allowed beside --derivative light.radiance: one value";
     assert!(message.contains(allowed), "{message}");
+    // At the end of a range there is no central difference; --set states the value.
+    let line = "sweep small.ron --derivative surfaces.0.albedo --set surfaces.0.albedo=1";
+    let message = fails(path, line, 2);
+    assert!(
+        message.contains("FIELD=STEP states a smaller step"),
+        "{message}"
+    );
     let message = fails(path, "sweep small.ron --derivative run.photons", 2);
     assert!(message.contains("whole number"), "{message}");
 }

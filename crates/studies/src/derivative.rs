@@ -61,6 +61,20 @@ pub struct PlaneDerivative {
     pub p_value: Option<f64>,
 }
 
+impl PlaneDerivative {
+    /// Why the derivative is not known.
+    fn open(&self) -> Option<&'static str> {
+        match (self.noise, self.bias) {
+            _ if self.size == 0.0 => None,
+            (Some(noise), Some(bias)) if bias <= noise => None,
+            (Some(_), Some(_)) => {
+                Some("the bias of the smallest step is above the noise: state a smaller step")
+            }
+            _ => Some("too few batches differ to give errors: more photons are needed"),
+        }
+    }
+}
+
 /// A measured derivative.
 #[derive(Debug)]
 pub struct Derivative {
@@ -70,7 +84,8 @@ pub struct Derivative {
     pub value: f64,
     /// The chosen step of each plane.
     pub planes: Vec<PlaneDerivative>,
-    /// Fail if theory disagrees at a plane, undecided if a derivative has no errors.
+    /// Fail if theory disagrees at a plane, undecided if a derivative has no errors, or a bias above
+    /// its noise.
     pub verdict: Verdict,
     /// The sweep over the values from which it is measured.
     pub sweep: FinishedSweep,
@@ -114,6 +129,8 @@ impl DerivedField {
         }
         let scene = load::scene(&source, |_| ())?;
         let value = real_value(&scene, &self.path, arguments.with("derivative", &self.path))?;
+        let is_own = |of: &Setting| matches!(of, Setting::Value(path, _) if *path == self.path);
+        request.set.retain(|setting| !is_own(setting));
         let step = self.step.unwrap_or(FIRST_STEP * size(value));
         // The steps up to the largest, from low values to high.
         let below = STEPS.iter().map(|share| -share);
@@ -125,6 +142,17 @@ impl DerivedField {
         }));
         request.common_seed = true;
         Ok((value, request))
+    }
+}
+
+/// Names the step where a value of the field is not allowed.
+pub fn beyond_range(field: &DerivedField, failure: Failure) -> Failure {
+    Failure {
+        message: format!(
+            "{}: a value at a step of the derivative by {} is not allowed; --derivative FIELD=STEP states a smaller step",
+            failure.message, field.path
+        ),
+        ..failure
     }
 }
 
@@ -234,11 +262,8 @@ impl<'a> Ladder<'a> {
         let mut rungs: Vec<_> = each
             .map(|(k, theory)| self.rung(k, theory.as_ref(), seed))
             .collect();
-        let is_settled = |rung: &PlaneDerivative| match (rung.bias, rung.noise) {
-            (Some(bias), Some(noise)) => bias <= noise,
-            // Nothing changes with any step, or too few batches differ with smaller steps.
-            _ => true,
-        };
+        // If too few batches differ, smaller steps do not help.
+        let is_settled = |rung: &PlaneDerivative| rung.noise.is_none() || rung.open().is_none();
         let last = STEPS.len() - 1;
         let chosen = rungs.iter().position(is_settled).unwrap_or(last);
         rungs[chosen].is_chosen = true;
@@ -367,10 +392,7 @@ fn verdict(planes: &[PlaneDerivative], alpha: f64) -> Verdict {
     let level = sidak(alpha, p_values().count());
     if p_values().any(|p| p < level) {
         Verdict::Fail
-    } else if planes
-        .iter()
-        .any(|plane| plane.noise.is_none() && plane.size > 0.0)
-    {
+    } else if planes.iter().any(|plane| plane.open().is_some()) {
         Verdict::Undecided
     } else {
         Verdict::Pass
@@ -448,14 +470,9 @@ impl Derivative {
         lines.extend(table::aligned(
             std::iter::once(header.to_vec()).chain(rows).collect(),
         ));
-        let few = self
-            .planes
-            .iter()
-            .filter(|of| of.noise.is_none() && of.size > 0.0);
-        lines.extend(few.map(|of| {
-            let name = &of.plane;
-            format!("{name}: too few batches differ to give errors: more photons are needed")
-        }));
+        let open = self.planes.iter();
+        let open = open.filter_map(|of| Some(format!("{}: {}", of.plane, of.open()?)));
+        lines.extend(open);
         lines.join("\n")
     }
 }

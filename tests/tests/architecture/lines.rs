@@ -13,14 +13,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "cli",
         4109,
-        4620,
-        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`; `fit`; `sweep --derivative`",
+        4632,
+        "`spectrum`; `compare --theory`, `--save explorer`, and the words on noise that pipeline had; `run --against`; `fit`; `sweep --derivative`; `diff --pairs`",
     ),
     (
         "compare",
         2927,
-        3442,
-        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information; residuals that are scaled and subtracted, and paired changes of bandwidths; differences within the error of the transform",
+        3446,
+        "no slope is known without photons; a warning names the convention that a failed prediction mistakes; differences of batches in pairs; steps of several parameters, and their Fisher information; residuals that are scaled and subtracted, and paired changes of bandwidths; differences within the error of the transform; guards of frequencies",
     ),
     (
         "explorer",
@@ -93,8 +93,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "studies",
         4009,
-        6254,
-        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search",
+        6276,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search; derivatives at the ends of ranges",
     ),
     (
         "theory",
@@ -114,7 +114,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_526,
+        69_547,
         "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds",
     ),
 ];

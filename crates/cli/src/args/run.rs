@@ -252,6 +252,10 @@ pub(crate) struct DiffArgs {
     #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share, allow_hyphen_values = true)]
     pub(crate) alpha: f64,
 
+    /// Refuse results that cannot be compared in pairs, such as those of different seeds
+    #[arg(long)]
+    pub(crate) pairs: bool,
+
     /// Draw the spectra of both results, and their difference, at the plane that differs most (.png or
     /// .svg)
     #[arg(long, value_name = "FILE")]

@@ -70,6 +70,12 @@ impl Diff {
         sidak(self.alpha, (slices + parameters).max(1))
     }
 
+    /// The reason why the results are not compared in pairs; `None` if they are.
+    #[must_use]
+    pub fn unpaired(&self) -> Option<&str> {
+        self.unpaired.as_deref()
+    }
+
     /// The verdict from all tests together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {

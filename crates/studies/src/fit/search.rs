@@ -225,7 +225,7 @@ fn check(model: &FitModel<'_>, information: &Array2<f64>) -> Result<(), Failure>
     match unknown {
         None => Ok(()),
         Some(i) => Err(Failure::bad_input(format!(
-            "the predicted spectra do not depend on {}",
+            "at the start, the predicted spectra do not depend on {}",
             model.fields[i]
         ))),
     }

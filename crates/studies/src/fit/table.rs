@@ -69,7 +69,7 @@ fn estimates(fitted: &Fitted) -> Vec<Vec<String>> {
     let row = |field: &super::FittedField| {
         let value = match field.error {
             Some(error) => uncertain(field.value, error),
-            None => format!("{} ± –", brief(field.value)),
+            None => "not determined".to_owned(),
         };
         vec![
             field.field.clone(),
