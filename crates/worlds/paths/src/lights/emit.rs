@@ -88,7 +88,7 @@ impl SampledLight {
                 let (from, along, point) = placed.sample(0, [a, b]);
                 Some(Emitted {
                     ray: Ray { from, along },
-                    flux: exitance.value(&point) * placed.areas()[0],
+                    flux: exitance.value(&point) * placed.form.areas(&placed.to_world)[0],
                     flash: None,
                 })
             }
@@ -109,27 +109,31 @@ impl SampledLight {
 }
 
 impl Draw<'_> {
-    fn target(&self) -> Option<&EmissionTarget> {
-        let [.., by] = self.random;
-        chosen(self.targets, by)
-    }
-
-    fn density(&self, plain: f64, aimed: impl Fn(&EmissionTarget) -> f64) -> f64 {
-        mixed(plain, self.targets, aimed)
+    /// A direction from a point, either natural or aimed, and its density. `sample` and `density`
+    /// describe the natural directions.
+    fn direction(
+        &self,
+        from: DVec3,
+        sample: impl Fn([f64; 2]) -> DVec3,
+        density: impl Fn(DVec3) -> f64,
+    ) -> (DVec3, f64) {
+        let [a, b, by] = self.random;
+        let along = match chosen(self.targets, by) {
+            Some(target) => target.toward(from, [a, b]),
+            None => sample([a, b]),
+        };
+        let aimed = |target: &EmissionTarget| target.density(from, along);
+        (along, mixed(density(along), self.targets, aimed))
     }
 
     /// Emits a photon from a surface point in a cosine-distributed or an aimed direction.
     fn flashed(&self, (position, normal, shine): (DVec3, DVec3, f64)) -> Emitted {
-        let [a, b, _] = self.random;
-        let along = match self.target() {
-            Some(target) => target.toward(position, [a, b]),
-            None => about(normal, cosine_hemisphere([a, b])),
-        };
-        let cosine = along.dot(normal).max(0.0);
-        let density = self.density(cosine / PI, |target| target.density(position, along));
+        let cosine = |along: DVec3| along.dot(normal).max(0.0);
+        let natural = |random| about(normal, cosine_hemisphere(random));
+        let (along, density) = self.direction(position, natural, |along| cosine(along) / PI);
         Emitted {
             ray: Ray::new(position, along),
-            flux: shine * cosine / density,
+            flux: shine * cosine(along) / density,
             flash: Some(EmissionPoint {
                 position,
                 normal,
@@ -140,12 +144,8 @@ impl Draw<'_> {
 
     /// Emits a photon from a point. Its direction is either uniform in a cone or aimed.
     fn away(&self, from: DVec3, cone: &Cone, intensity: &dyn Fn(DVec3) -> f64) -> Emitted {
-        let [a, b, _] = self.random;
-        let along = match self.target() {
-            Some(target) => target.toward(from, [a, b]),
-            None => cone.sample([a, b]),
-        };
-        let density = self.density(cone.density(along), |target| target.density(from, along));
+        let natural = |random| cone.sample(random);
+        let (along, density) = self.direction(from, natural, |along| cone.density(along));
         Emitted {
             ray: Ray { from, along },
             flux: intensity(along) / density,
@@ -156,14 +156,14 @@ impl Draw<'_> {
     /// Emits a photon of a distant light through a disc that covers all surfaces, or through a
     /// target.
     fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
-        let [a, b, _] = self.random;
+        let [a, b, by] = self.random;
         let whole = EmissionTarget {
             center: geometry.center,
             // The disc is slightly wider than the sphere around all surfaces, because a surface
             // may touch this sphere.
             radius: 1.001 * geometry.radius,
         };
-        let aimed = self.target().unwrap_or(&whole);
+        let aimed = chosen(self.targets, by).unwrap_or(&whole);
         let across = disc(aimed.radius, [a, b]).extend(0.0);
         let place = aimed.center + about(toward, across);
         let density = |disc: &EmissionTarget| {
@@ -179,7 +179,7 @@ impl Draw<'_> {
         let from = place + (2.0 * whole.radius - height) * toward;
         Emitted {
             ray: Ray::new(from, -toward),
-            flux: irradiance / self.density(density(&whole), density),
+            flux: irradiance / mixed(density(&whole), self.targets, density),
             flash: None,
         }
     }

@@ -127,7 +127,7 @@ fn shining(shape: &Shape, number: usize, geometry: &SceneGeometry) -> Option<Sam
         }
         _ => SampledLight::ShiningShape(ShiningShape::new(
             number,
-            &placed.areas(),
+            &placed.form.areas(&placed.to_world),
             emission,
             shape.emits_on_both_sides,
         )),

@@ -17,9 +17,6 @@ pub struct BackwardProbe<'a> {
     search: LightSearch,
 }
 
-/// Number of rays between two progress reports.
-const BLOCK: u64 = 4096;
-
 impl<'a> BackwardProbe<'a> {
     /// Creates the backward rays of a probe.
     #[must_use]
@@ -101,20 +98,19 @@ impl PhotonSource for BackwardProbe<'_> {
     ) -> Ledger {
         let planes = &self.probe.planes;
         let first = u64::from(batch) * self.budget.each;
-        for block in 0..self.budget.each.div_ceil(BLOCK) {
-            let start = block * BLOCK;
-            let count = BLOCK.min(self.budget.each - start);
+        for block in self.budget.blocks() {
             for (i, plane) in planes.iter().enumerate() {
                 // Different planes and batches use different numbers.
                 let of = |ray: u64| (first + ray) * planes.len() as u64 + i as u64;
                 let index = u64::from(batch) * planes.len() as u64 + i as u64;
                 let net = Net::new(self.budget.seed, Stream::Net, index, JOINT);
-                let crossings: Vec<Crossing> = (start..start + count)
+                let crossings: Vec<Crossing> = block
+                    .clone()
                     .map(|ray| self.crossing(plane, of(ray), (&net, point_of(ray))))
                     .collect();
                 record(i, &crossings);
             }
-            progress(count);
+            progress(block.end - block.start);
         }
         Ledger::default()
     }

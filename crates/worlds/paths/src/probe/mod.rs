@@ -23,6 +23,7 @@ use etendue_field::{
 use etendue_world::{Camera, Projection};
 use glam::DVec3;
 use lines::SurfaceLeg;
+use std::ops::Range;
 
 /// The options of a probe.
 #[derive(Clone, Copy, Debug)]
@@ -299,4 +300,15 @@ pub struct Budget {
     pub each: u64,
     /// Seed of all batches.
     pub seed: u64,
+}
+
+/// Number of rays or photons between two progress reports.
+const BLOCK: u64 = 4096;
+
+impl Budget {
+    /// The rays or photons of a batch, in blocks between progress reports.
+    fn blocks(self) -> impl Iterator<Item = Range<u64>> {
+        let starts = (0..self.each.div_ceil(BLOCK)).map(|block| block * BLOCK);
+        starts.map(move |start| start..self.each.min(start + BLOCK))
+    }
 }

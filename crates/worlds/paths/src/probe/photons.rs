@@ -25,9 +25,6 @@ pub struct PhotonProbe<'a> {
     windows: WindowConnector<'a>,
 }
 
-/// Number of photons between two progress reports.
-const BLOCK: u64 = 4096;
-
 impl<'a> PhotonProbe<'a> {
     /// Creates the photons of a probe.
     #[must_use]
@@ -44,7 +41,7 @@ impl<'a> PhotonProbe<'a> {
     /// follows from the objects that are seen through the window of the plane.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
-        self.windows.misses(plane)
+        self.windows.misses[plane]
     }
 
     #[expect(
@@ -202,10 +199,8 @@ impl PhotonSource for PhotonProbe<'_> {
     ) -> Ledger {
         let first = u64::from(batch) * self.budget.each;
         let mut found: Vec<Vec<Crossing>> = vec![Vec::new(); self.probe.planes.len()];
-        for block in 0..self.budget.each.div_ceil(BLOCK) {
-            let start = block * BLOCK;
-            let count = BLOCK.min(self.budget.each - start);
-            for photon in start..start + count {
+        for block in self.budget.blocks() {
+            for photon in block.clone() {
                 self.photon(first + photon, &mut |plane, crossing| {
                     found[plane].push(crossing);
                 });
@@ -214,7 +209,7 @@ impl PhotonSource for PhotonProbe<'_> {
                 record(plane, crossings);
                 crossings.clear();
             }
-            progress(count);
+            progress(block.end - block.start);
         }
         Ledger::default()
     }

@@ -102,7 +102,7 @@ pub(super) struct WindowConnector<'a> {
     /// The region of each leg.
     regions: Vec<LineRegion>,
     /// For each plane, the reason why connections miss some of its light.
-    misses: Vec<Option<&'static str>>,
+    pub(super) misses: Vec<Option<&'static str>>,
 }
 
 impl<'a> WindowConnector<'a> {
@@ -142,11 +142,6 @@ impl<'a> WindowConnector<'a> {
             })
             .collect();
         found
-    }
-
-    /// The reason why connections do not find all light that reaches a plane.
-    pub(super) fn misses(&self, plane: usize) -> Option<&'static str> {
-        self.misses[plane]
     }
 
     /// Follows a line back from a window through smooth surfaces, and enlarges the regions of the

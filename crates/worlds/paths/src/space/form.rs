@@ -19,24 +19,16 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// The eight corners of the bounding box of the geometry.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
-        let [low, high] = match self {
+    /// The lowest and the highest corner of the bounding box of the geometry.
+    pub(super) fn bounds(&self) -> [DVec3; 2] {
+        match self {
             Self::Rectangle | Self::Disc => {
                 [DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)]
             }
             Self::Sphere => [DVec3::NEG_ONE, DVec3::ONE],
             Self::Cylinder => [DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE],
-            Self::Mesh(mesh) => mesh.bounds(),
-        };
-        let pick = move |i: usize, axis: usize| {
-            if i >> axis & 1 == 0 {
-                low[axis]
-            } else {
-                high[axis]
-            }
-        };
-        (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
+            Self::Mesh(mesh) => mesh.bounds,
+        }
     }
 
     /// The first hit on a ray at distances strictly within bounds.
@@ -65,7 +57,8 @@ impl Form {
             }
             Self::Mesh(mesh) => return mesh.first(ray, [from, until]),
         };
-        distance.map(Spot::at)
+        let spot = Spot::default();
+        distance.map(|distance| Spot { distance, ..spot })
     }
 
     /// Checks whether a ray hits the geometry at a distance strictly within bounds.

@@ -12,7 +12,8 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub(crate) struct WorldMesh {
     triangles: Arc<Triangles>,
-    bounds: [DVec3; 2],
+    /// The lowest and the highest corner of the bounding box.
+    pub(super) bounds: [DVec3; 2],
     tree: OnceLock<PieceTree>,
 }
 
@@ -62,10 +63,6 @@ impl WorldMesh {
     /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         places(&self.triangles, self.triangles.corners()[triangle as usize])
-    }
-
-    pub(super) fn bounds(&self) -> [DVec3; 2] {
-        self.bounds
     }
 
     pub(super) fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<Spot> {

@@ -15,7 +15,7 @@ pub use placed::Hit;
 use placed::{Placed, placed};
 pub use ray::Ray;
 use ray::around;
-use search::SurfaceSearch;
+use search::{MAX_GROUPED, SurfaceSearch};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ impl SceneGeometry {
         let cameras = cameras.map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
         Self {
-            search: SurfaceSearch::new(&placed, &bounds, farthest),
+            search: SurfaceSearch::new(&placed, &bounds, farthest, MAX_GROUPED),
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),

@@ -2,7 +2,8 @@
 
 use super::form::{Form, square_uv};
 use super::mesh::WorldMesh;
-use super::ray::{Ray, Spot, around};
+use super::ray::{Ray, Spot};
+use etendue_field::{box_corners, enclosing};
 use etendue_world::{Geometry, Shape, TexturePoint, Triangles};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::collections::HashMap;
@@ -72,8 +73,8 @@ impl Placed {
     }
 
     pub(super) fn bounds(&self) -> [DVec3; 2] {
-        let corners = self.form.corners();
-        around(corners.map(|corner| [self.to_world.transform_point3(corner); 2]))
+        let [low, high] = self.form.bounds();
+        enclosing(&box_corners(low, high).map(|corner| self.to_world.transform_point3(corner)))
     }
 
     /// Whether the surface is one piece, and not the triangles of its mesh.
@@ -103,7 +104,7 @@ impl Placed {
 
     #[inline]
     pub(super) fn hit(&self, ray: &Ray, shape: usize, spot: &Spot) -> Hit {
-        let position = ray.at(spot.distance);
+        let position = ray.from + spot.distance * ray.along;
         let place = self.to_local.transform_point3(position);
         let (normal, frame, point) = if let Some(flat) = self.flat {
             (flat.z_axis, flat, square_uv(place.truncate()).into())
@@ -142,11 +143,6 @@ impl Placed {
             (place, self.normal(local.normal), local.point)
         };
         (self.to_world.transform_point3(place), normal, point)
-    }
-
-    /// The areas, in the world, of the pieces of the surface: its triangles, or the whole.
-    pub(crate) fn areas(&self) -> Vec<f64> {
-        self.form.areas(&self.to_world)
     }
 }
 

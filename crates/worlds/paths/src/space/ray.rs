@@ -16,10 +16,6 @@ impl Ray {
     pub(crate) fn new(from: DVec3, along: DVec3) -> Self {
         Self { from, along }
     }
-
-    pub(crate) fn at(&self, distance: f64) -> DVec3 {
-        self.from + distance * self.along
-    }
 }
 
 /// A point of a geometry, in local coordinates.
@@ -36,7 +32,7 @@ pub(crate) struct Local {
 }
 
 /// The hit of a ray with a geometry.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Spot {
     /// The distance, in multiples of the direction of the ray.
     pub(super) distance: f64,
@@ -44,17 +40,6 @@ pub(super) struct Spot {
     pub(super) triangle: u32,
     /// The barycentric coordinates of the second and the third corner of this triangle.
     pub(super) weights: DVec2,
-}
-
-impl Spot {
-    /// The hit with a geometry that is not a mesh.
-    pub(super) fn at(distance: f64) -> Self {
-        Self {
-            distance,
-            triangle: 0,
-            weights: DVec2::ZERO,
-        }
-    }
 }
 
 /// The smallest box around boxes, given by their lowest and highest corners; an empty box

@@ -19,7 +19,7 @@ pub(super) enum SurfaceSearch {
 }
 
 /// The largest number of pieces that are all tested. For more pieces, a tree is faster.
-const MAX_GROUPED: usize = 64;
+pub(super) const MAX_GROUPED: usize = 64;
 
 /// Size of the triangles below which a mesh has a tree of its own, relative to the size of the
 /// world. The boxes in the tree of the world are padded by about a tenth of this.
@@ -27,13 +27,8 @@ const FINE: f64 = 1e-4;
 
 impl SurfaceSearch {
     /// Prepares the search for surfaces with their bounds. `origins` is the largest coordinate of
-    /// the starting points of rays.
-    pub(super) fn new(placed: &[Placed], bounds: &[[DVec3; 2]], origins: f64) -> Self {
-        Self::with_groups(placed, bounds, origins, MAX_GROUPED)
-    }
-
-    /// Does the same, and groups pieces unless there are more than `max_grouped`.
-    fn with_groups(
+    /// the starting points of rays. Pieces are grouped unless there are more than `max_grouped`.
+    pub(super) fn new(
         placed: &[Placed],
         bounds: &[[DVec3; 2]],
         origins: f64,
@@ -173,7 +168,7 @@ mod tests {
         let placed = shapes();
         let bounds: Vec<_> = placed.iter().map(Placed::bounds).collect();
         let (small, large) = [64, 0]
-            .map(|most| SurfaceSearch::with_groups(&placed, &bounds, 9.0, most))
+            .map(|most| SurfaceSearch::new(&placed, &bounds, 9.0, most))
             .into();
         assert!(
             matches!(small, SurfaceSearch::Groups(_)) && matches!(large, SurfaceSearch::Tree(_))
