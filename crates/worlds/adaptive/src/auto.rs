@@ -95,7 +95,7 @@ type Factors = ObjectSums<2>;
 /// The ratio k of measured to predicted squared errors of an object, up to a common factor.
 /// The ratio is never zero, because the first samples may have missed the object's light.
 fn factor(factors: &Factors, object: usize) -> f64 {
-    let [error, criterion] = factors.all();
+    let [error, criterion] = factors.all;
     if error <= 0.0 || criterion <= 0.0 {
         return 1.0;
     }

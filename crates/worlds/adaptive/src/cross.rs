@@ -63,8 +63,8 @@ pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) ->
     let dark = dark(samples);
     let of = |error: &CrossError| {
         let (sample, noise) = &samples[error.index];
-        let off = sample.light(error.off);
-        let here = sample.light(sample.value);
+        let off = sample.surface.light(error.off);
+        let here = sample.surface.light(sample.value);
         let scale = 0.5 * (here * here + (here + off).powi(2)) + dark * dark;
         ShadedSample {
             metric: sample.metric.times(WIDER.powi(-2)),
@@ -78,6 +78,8 @@ pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) ->
 /// A hundredth of the mean radiance. For light below this radiance, errors are relative to
 /// this radiance.
 pub(crate) fn dark(samples: &[(ShadedSample, f64)]) -> f64 {
-    let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
+    let lights = samples
+        .iter()
+        .map(|(sample, _)| sample.surface.light(sample.value));
     0.01 * lights.sum::<f64>() / samples.len().max(1) as f64
 }

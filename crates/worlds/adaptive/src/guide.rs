@@ -110,7 +110,7 @@ impl LightGuide {
         let dark = dark(samples);
         for (plain, of_guide) in plain.iter().zip(of_guide) {
             let (sample, _) = &samples[plain.index];
-            let light = sample.light(sample.value);
+            let light = sample.surface.light(sample.value);
             let scale = light * light + dark * dark;
             let weights = sample.surface.factors.map(|factor| factor * factor / scale);
             let noise = guides[plain.index].variance;

@@ -30,5 +30,4 @@ mod smooth;
 mod visible;
 
 pub use method::{Layers, Rendered, SamplePlan, Stage, render};
-pub use metric::Metric;
 pub use parts::SampleMethod;

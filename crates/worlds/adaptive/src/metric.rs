@@ -7,19 +7,18 @@
 /// The matrix of samples defines distances. Measured in this way, neighbouring samples are about 1
 /// apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metric {
+pub(crate) struct Metric {
     /// The diagonal entry for steps along columns.
-    pub xx: f64,
+    pub(crate) xx: f64,
     /// The mixed entry.
-    pub xy: f64,
+    pub(crate) xy: f64,
     /// The diagonal entry for steps along rows.
-    pub yy: f64,
+    pub(crate) yy: f64,
 }
 
 impl Metric {
     /// An isotropic metric.
-    #[must_use]
-    pub fn even(square: f64) -> Self {
+    pub(crate) fn even(square: f64) -> Self {
         Self {
             xx: square,
             xy: 0.0,
@@ -27,7 +26,6 @@ impl Metric {
         }
     }
 
-    #[must_use]
     pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             xx: self.xx + other.xx,
@@ -36,7 +34,6 @@ impl Metric {
         }
     }
 
-    #[must_use]
     pub(crate) fn times(self, factor: f64) -> Self {
         Self {
             xx: factor * self.xx,
@@ -46,26 +43,22 @@ impl Metric {
     }
 
     /// The squared length of a step.
-    #[must_use]
     pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
         x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
     }
 
-    #[must_use]
     pub(crate) fn determinant(&self) -> f64 {
         self.xx * self.yy - self.xy * self.xy
     }
 
     /// The larger eigenvalue.
-    #[must_use]
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         let (mean, off) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         mean + (off * off + self.xy * self.xy).sqrt()
     }
 
     /// All steps up to the length `radius` fill an ellipse. Returns half of its extents along
     /// columns and rows.
-    #[must_use]
     pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
         let determinant = self.determinant();
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
@@ -73,7 +66,6 @@ impl Metric {
 
     /// A metric that is changed towards an isotropic metric, so that the lengths of a step
     /// in different directions differ by at most a factor of `most`.
-    #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {
         let large = self.largest();
         let small = self.xx + self.yy - large;

@@ -12,7 +12,8 @@ const SHARED: f64 = 4.0;
 #[derive(Debug)]
 pub(crate) struct ObjectSums<const N: usize> {
     count: f64,
-    all: [f64; N],
+    /// The sums over all objects.
+    pub(crate) all: [f64; N],
     objects: BTreeMap<usize, [f64; N]>,
 }
 
@@ -35,11 +36,6 @@ impl<const N: usize> ObjectSums<N> {
             own[i] += number;
             self.all[i] += number;
         }
-    }
-
-    /// The sums over all objects.
-    pub(crate) fn all(&self) -> [f64; N] {
-        self.all
     }
 
     /// The sums of an object, with the mean over all objects added as [`SHARED`] samples.

@@ -22,13 +22,6 @@ pub(crate) struct ShadedSample {
     pub(crate) value: [f64; 2],
 }
 
-impl ShadedSample {
-    /// The radiance for values of base and lobe, with the factors of the surface.
-    pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
-        self.surface.light(value)
-    }
-}
-
 /// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a
 /// narrower filter, some points would use only one sample. A wider filter would blur details that
 /// the samples show.
