@@ -75,11 +75,6 @@ impl Files {
         Ok(bytes)
     }
 
-    /// The text of a file found by [`Self::find`].
-    pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
-        text(self.read(path)?)
-    }
-
     /// The number of bytes that may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()

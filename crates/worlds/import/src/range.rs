@@ -1,7 +1,7 @@
-//! The range of numbers that a scene may hold, and checks of the placement of shapes, for any
-//! format.
+//! The range of numbers that a scene may hold, checks of the placement of shapes, and rotations,
+//! for any format.
 
-use etendue_world::Geometry;
+use etendue_world::{Geometry, Texture};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The largest number in a scene, as in Étendue's own scenes. With this limit, sums of products of
@@ -35,6 +35,15 @@ pub(crate) fn in_range(value: f64) -> Result<f64, String> {
             "{value:e} is out of range; allowed: {:e} to {MAX_NUMBER:e}",
             -MAX_NUMBER
         )),
+    }
+}
+
+/// Returns a texture whose values are at most 1; `Err` describes the fault.
+pub(crate) fn share(name: &str, texture: Texture) -> Result<Texture, String> {
+    let largest = texture.largest();
+    match largest <= MAX_SHARE {
+        true => Ok(texture),
+        false => Err(format!("{name} goes up to {largest}; allowed: 0 to 1")),
     }
 }
 
@@ -85,6 +94,14 @@ pub(crate) fn similar(map: DMat3) -> DMat3 {
     let aside = y.reject_from_normalized(along).normalize();
     let up = along.cross(aside);
     x.length() * DMat3::from_cols(along, aside, up * up.dot(z).signum())
+}
+
+/// The rotation about a unit axis (Rodrigues). Another length of the axis also distorts.
+pub(crate) fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
+    let (sin, cos) = libm::sincos(angle);
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z]
+        .map(|unit| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit));
+    DAffine3::from_mat3(DMat3::from_cols(x, y, z))
 }
 
 fn axes(map: DMat3) -> [DVec3; 3] {

@@ -87,10 +87,6 @@ impl<'a> GltfReader<'a> {
 
     /// The emission of a material's front. The outer `None` means that a cause of refusal
     /// was reported.
-    #[expect(
-        clippy::option_option,
-        reason = "the outer `None` means that a cause was reported"
-    )]
     fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let path = format!("{}.emissiveFactor", draft.path);
         let factor = self.shares(&path, draft.source.emissive_factor.0)?;

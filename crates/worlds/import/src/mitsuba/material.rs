@@ -187,10 +187,8 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    #[expect(
-        clippy::option_option,
-        reason = "the inner `None` means a smooth surface; the outer `None` means that a cause was reported"
-    )]
+    /// The roughness. The inner `None` means a smooth surface. The outer `None` means that a cause
+    /// of refusal was reported.
     fn roughness(&mut self, object: ObjectRef<'a>) -> Option<Option<Roughness>> {
         if !object.plugin.starts_with("rough") {
             return Some(None);

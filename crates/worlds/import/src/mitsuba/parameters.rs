@@ -13,7 +13,7 @@ pub(super) struct Parameters {
     values: BTreeMap<String, String>,
     /// The parameters that the caller has set, and that the file did not use so far. The file must
     /// use all of them.
-    unused: BTreeSet<String>,
+    pub(super) unused: BTreeSet<String>,
     made: usize,
 }
 
@@ -31,11 +31,6 @@ impl Parameters {
     pub(super) fn default(&mut self, name: &str, value: &str) {
         let known = self.values.entry(name.to_owned());
         known.or_insert_with(|| value.to_owned());
-    }
-
-    /// The names that the caller has set but the file does not use.
-    pub(super) fn unused(&self) -> impl Iterator<Item = &String> {
-        self.unused.iter()
     }
 
     /// The text after parameters are replaced by their values. `\$` stands for a dollar

@@ -4,6 +4,7 @@ use super::object::Value;
 use super::transform::{allow, find, is_rigid, required, step};
 use super::value;
 use super::xml::{SourceFile, Tree, XmlElement};
+use crate::files;
 use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use glam::DAffine3;
@@ -156,7 +157,7 @@ impl Tree<'_> {
                 false => Ok(()),
             };
         }
-        let text = self.files.read_text(&path).map_err(told)?;
+        let text = self.files.read(&path).and_then(files::text).map_err(told)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
         self.open.push(path);

@@ -5,7 +5,7 @@ use super::object::{ObjectProperty, ObjectRef, Value};
 use super::reader::MitsubaReader;
 use crate::Color;
 use crate::pictures::TransferCurve;
-use crate::range::{MAX_NUMBER, MAX_SHARE};
+use crate::range::{MAX_NUMBER, share};
 use crate::report::quoted;
 use crate::spectrum::{Role, from_xyz, rgb};
 use etendue_field::Raster;
@@ -54,12 +54,8 @@ impl<'a> MitsubaReader<'a> {
     ) -> Option<Texture> {
         let texture = self.texture_or(object, name, role, default)?;
         let texture = object.not_negative(name, texture)?;
-        let largest = texture.largest();
-        if largest <= MAX_SHARE {
-            return Some(texture);
-        }
-        let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
-        object.fault(name, message)
+        self.report
+            .accept(object.place_of(name), share(name, texture))
     }
 
     /// Reads the strength of a light, which must be a single number.

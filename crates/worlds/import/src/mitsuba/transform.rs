@@ -2,6 +2,7 @@
 //! precede it.
 
 use super::value;
+use crate::range::rotation;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// The attributes of an element, after parameters are replaced by their values.
@@ -69,24 +70,8 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
 
 /// The frame around a unit vector, as in Mitsuba (Duff et al. 2017).
 pub(super) fn frame(z: DVec3) -> DMat3 {
-    let sign = 1.0_f64.copysign(z.z);
-    let a = -1.0 / (sign + z.z);
-    let b = z.x * z.y * a;
-    let s = DVec3::new(z.x * z.x * a * sign + 1.0, sign * b, -sign * z.x);
-    let t = DVec3::new(b, z.y * z.y * a + sign, -z.y);
+    let (s, t) = z.any_orthonormal_pair();
     DMat3::from_cols(s, t, z)
-}
-
-/// The rotation about a unit axis (Rodrigues). Another length of the axis also distorts.
-fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
-    let (sin, cos) = libm::sincos(angle);
-    let column =
-        |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
-    DAffine3::from_mat3(DMat3::from_cols(
-        column(DVec3::X),
-        column(DVec3::Y),
-        column(DVec3::Z),
-    ))
 }
 
 /// Checks whether a map is rigid, within the rounding of numbers with few digits.

@@ -68,7 +68,7 @@ impl<'a> Tree<'a> {
     pub(super) fn read(&mut self, text: &str, file: &MainFile<'_>) {
         self.open.push(file.path.clone());
         self.file(text, &file.name, Rc::from([file.folder()]), None);
-        for name in self.parameters.unused() {
+        for name in &self.parameters.unused {
             let message = format!("`${name}` is set, but the scene does not use it");
             self.report
                 .cause(&SourcePlace::whole("parameters"), message);

@@ -3,7 +3,7 @@
 use super::mtl::{MtlEntry, MtlMap, ObjSurface};
 use super::reader::ObjReader;
 use crate::pictures::{counted, decode, linear, weighted};
-use crate::range::{MAX_NUMBER, MAX_SHARE};
+use crate::range::{MAX_NUMBER, MAX_SHARE, share};
 use crate::report::quoted;
 use etendue_field::Raster;
 use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
@@ -80,12 +80,7 @@ impl ObjReader<'_> {
         match &entry.map_kd {
             Some(map) => {
                 let texture = self.bitmap(map, entry.kd.unwrap_or([1.0; 3]), false)?;
-                let largest = texture.largest();
-                if largest > MAX_SHARE {
-                    let message = format!("Kd goes up to {largest}; allowed: 0 to 1");
-                    return self.report.refuse(&map.place, message);
-                }
-                Some(texture)
+                self.report.accept(&map.place, share("Kd", texture))
             }
             None => {
                 let factor = entry.kd.unwrap_or([0.5; 3]);
@@ -136,10 +131,6 @@ impl ObjReader<'_> {
     }
 
     /// The emission. The outer `None` means that a cause of refusal was reported.
-    #[expect(
-        clippy::option_option,
-        reason = "the outer `None` means that a cause was reported"
-    )]
     fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {
             return self

@@ -81,7 +81,7 @@ impl<'a> Builder<'a> {
         let mut tokens = Tokens::new(text, name);
         self.follow(&mut tokens);
         if !self.is_world {
-            self.report.cause(&tokens.here(), "no WorldBegin");
+            self.report.cause(&tokens.place(tokens.at), "no WorldBegin");
         }
         self.refuse_open(0);
         self.scene

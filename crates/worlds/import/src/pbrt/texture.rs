@@ -4,7 +4,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::reader::{Ask, PbrtReader, Uv};
 use crate::files::has_extension;
 use crate::pictures::TransferCurve;
-use crate::range::MAX_SHARE;
+use crate::range::share;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_field::Raster;
@@ -55,12 +55,7 @@ impl PbrtReader<'_> {
     ) -> Read<Texture> {
         let ask = Ask::Spectrum(Role::Reflectance);
         let texture = self.texture_or(entity, name, ask, default, uv)?;
-        let largest = texture.largest();
-        if largest <= MAX_SHARE {
-            return Ok(texture);
-        }
-        let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
-        Err(entity.fault(name, message))
+        share(name, texture).map_err(|message| entity.fault(name, message))
     }
 
     /// Reads one number; a varying texture is a cause of refusal.

@@ -76,7 +76,8 @@ pub(super) struct LineColumn {
 pub(super) struct Tokens<'a> {
     file: Rc<str>,
     rest: &'a str,
-    at: LineColumn,
+    /// The current position.
+    pub(super) at: LineColumn,
     peeked: Option<(Token<'a>, LineColumn)>,
 }
 
@@ -93,11 +94,6 @@ impl<'a> Tokens<'a> {
     /// A place in this file.
     pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
         SourcePlace::at(&self.file, at.line, at.column)
-    }
-
-    /// The current position.
-    pub(super) fn here(&self) -> SourcePlace {
-        self.place(self.at)
     }
 
     /// The next token without consuming it.

@@ -11,13 +11,7 @@ const ALIKE: f64 = 1e-3;
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     let axis = DVec3::new(x, y, z).try_normalize();
     let axis = axis.ok_or("the axis has length 0")?;
-    let (sin, cos) = libm::sincos(angle.to_radians());
-    let column =
-        |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
-    let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(column);
-    Ok(DAffine3::from_mat3(DMat3::from_cols(
-        columns[0], columns[1], columns[2],
-    )))
+    Ok(crate::range::rotation(axis, angle.to_radians()))
 }
 
 /// The map to camera coordinates with Z forward, Y up and X to the right, which are
