@@ -109,8 +109,8 @@ fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
 struct StageWatch<'a> {
     reporter: &'a dyn Reporter,
     bar: Mutex<Option<Box<dyn Progress + 'a>>>,
-    now: RefCell<Option<(&'static str, Instant)>>,
-    seconds: RefCell<BTreeMap<&'static str, f64>>,
+    now: RefCell<Option<(String, Instant)>>,
+    seconds: RefCell<BTreeMap<String, f64>>,
 }
 
 impl<'a> StageWatch<'a> {
@@ -125,22 +125,14 @@ impl<'a> StageWatch<'a> {
 
     fn begin(&self, stage: Stage, steps: usize) {
         self.lap();
-        let name = match stage {
-            Stage::Visibility => "visibility",
-            Stage::Blockers => "blockers",
-            Stage::Criterion => "criterion",
-            Stage::Guide => "guide",
-            Stage::Samples => "samples",
-            Stage::Shading => "shading",
-            Stage::Reconstruction => "reconstruction",
-        };
-        *self.now.borrow_mut() = Some((name, Instant::now()));
+        let name = format!("{stage:?}").to_lowercase();
         let bar = self.reporter.begin(Work::Steps {
             verb: "rendering",
             total: steps,
             things: "steps",
         });
-        bar.name(name);
+        bar.name(&name);
+        *self.now.borrow_mut() = Some((name, Instant::now()));
         *self.bar() = Some(bar);
     }
 
@@ -154,7 +146,7 @@ impl<'a> StageWatch<'a> {
         }
     }
 
-    fn end(self) -> BTreeMap<&'static str, f64> {
+    fn end(self) -> BTreeMap<String, f64> {
         self.lap();
         self.bar().take();
         self.seconds.into_inner()

@@ -1,9 +1,9 @@
 //! Measures the bandwidth of the picture around a pixel, and chooses the window for this
 //! measurement.
 
-use super::scene::{BATCHES, ProbedScene};
+use super::scene::{BATCHES, ProbedScene, budget};
 use etendue_field::{Slices, TwoPlane, VirtualPlane};
-use etendue_paths::{BackwardProbe, Budget, Probe, Stop};
+use etendue_paths::{BackwardProbe, Probe, Stop};
 use etendue_spectrum::bandwidth::Widest;
 use etendue_spectrum::directional::DirectionalBandwidth;
 use etendue_spectrum::{Uncertain, WindowedMean, measure};
@@ -226,11 +226,7 @@ fn measured(
         return Ok(None);
     };
     let plane = &probe.planes[0];
-    let budget = Budget {
-        each: rays.div_ceil(u64::from(BATCHES)),
-        seed,
-    };
-    let backward = BackwardProbe::new(&probe, budget);
+    let backward = BackwardProbe::new(&probe, budget(rays, seed));
     let found = measure(&backward, &probe.planes, 0..BATCHES, progress);
     let pictures: Vec<Slices> = found
         .at_plane(0)
