@@ -110,7 +110,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
         "backward rays on triangles with interpolated normals; two scenes are traced with the same photons",
     ),
     ("transform", 1685, 1687, "its head says what it leaves out"),
-    ("worlds", 22_217, 21_904, ""),
+    ("worlds", 22_217, 21_792, ""),
     (
         "tests of all kinds",
         69_203,
