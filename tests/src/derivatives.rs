@@ -1,10 +1,11 @@
 //! Compares measured derivatives with those of theory, by `etendue sweep --derivative`.
 
 use crate::hostile::child::program;
+use crate::pairs::checks_of_pulls;
 use crate::progress::in_parallel;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row};
-use crate::statistics::{mean, uniformity};
+use crate::statistics::uniformity;
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -74,8 +75,7 @@ pub(crate) fn section(photons: u64, seed: u64) -> std::io::Result<ReportSection>
     let pull = |of: &MeasuredDerivative| (of.share[0] - 1.0) / of.share[1];
     let all = || found.iter().flatten();
     let pulls: Vec<f64> = all().map(pull).collect();
-    let [average, error] = mean(&pulls);
-    let [square, error_of_square] = mean(&pulls.iter().map(|z| z * z).collect::<Vec<_>>());
+    let (pull, of_pulls) = checks_of_pulls(&pulls);
     let p_values: Vec<f64> = all().filter_map(|of| of.p_value).collect();
     let uniform = uniformity(&p_values);
     let mut rows: Vec<Row> = each
@@ -83,20 +83,11 @@ pub(crate) fn section(photons: u64, seed: u64) -> std::io::Result<ReportSection>
         .zip(&found)
         .map(|(of, found)| row(*of, found))
         .collect();
-    let four = "four standard errors";
-    let checks = vec![
+    let mut checks = vec![
         Check::new("fields", pulls.len() as f64, AtLeast(30.0)).because("as many are asked for"),
-        Check::new("mean pull", average.abs(), Below(4.0 * error)).because(four),
-        // 63/61 is the mean square of Student's distribution for 64 batches.
-        Check::new(
-            "square",
-            (square - 63.0 / 61.0).abs(),
-            Below(4.0 * error_of_square),
-        )
-        .because(four),
         Check::new("uniform p", uniform, AtLeast(0.01)).because("level of the test"),
     ];
-    let pull = format!("{average:.3} ± {error:.3}, square {square:.3} ± {error_of_square:.3}");
+    checks.extend(of_pulls);
     let cells = [
         "all",
         "",

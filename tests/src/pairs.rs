@@ -161,22 +161,12 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
     let uniform = uniformity(&of(|found| found.p_value));
     let planted = uniformity(&of(|found| found.p_planted));
     let pulls = of(|found| found.ratio.map(|[ratio, error]| (ratio - 1.0) / error));
-    let [average, error] = mean(&pulls);
-    let [square, error_of_square] = mean(&pulls.iter().map(|z| z * z).collect::<Vec<_>>());
-    let four = "four standard errors";
-    // A pull from R = 64 batches has Student's distribution: the mean of its square is 63/61.
-    let checks = vec![
+    let (pull, of_pulls) = checks_of_pulls(&pulls);
+    let mut checks = vec![
         Check::new("uniform p", uniform, AtLeast(0.01)).because("level of the test"),
         Check::new("planted", planted, Below(0.01)).because("a planted fault must be seen"),
-        Check::new("mean pull", average.abs(), Below(4.0 * error)).because(four),
-        Check::new(
-            "square",
-            (square - 63.0 / 61.0).abs(),
-            Below(4.0 * error_of_square),
-        )
-        .because(four),
     ];
-    let pull = format!("{average:.3} ± {error:.3}, square {square:.3} ± {error_of_square:.3}");
+    checks.extend(of_pulls);
     let cells = ["all", "", "", "", "", "", &pull, &format!("{uniform:.3}")];
     rows.push(Row::new(cells.map(str::to_owned).to_vec(), checks));
     let text = format!(
@@ -198,6 +188,22 @@ fn section(options: &PairOptions, sampling: Sampling) -> ReportSection {
     let columns =
         "scene | field | value | gain | seen | mean χ²/dof | measured over predicted | KS p";
     ReportSection::new(format!("Pairs, {}", words(sampling)), text, columns, rows)
+}
+
+/// The mean and the mean square of pulls from 64 batches, as text, and the checks of both.
+pub(crate) fn checks_of_pulls(pulls: &[f64]) -> (String, [Check; 2]) {
+    let [average, error] = mean(pulls);
+    let [square, error_of_square] = mean(&pulls.iter().map(|z| z * z).collect::<Vec<_>>());
+    let four = "four standard errors";
+    // A pull from R = 64 batches has Student's distribution: the mean of its square is 63/61.
+    let off = (square - 63.0 / 61.0).abs();
+    (
+        format!("{average:.3} ± {error:.3}, square {square:.3} ± {error_of_square:.3}"),
+        [
+            Check::new("mean pull", average.abs(), Below(4.0 * error)).because(four),
+            Check::new("square", off, Below(4.0 * error_of_square)).because(four),
+        ],
+    )
 }
 
 fn row(names: &[&str; 3], found: &[PairStatistics]) -> Row {

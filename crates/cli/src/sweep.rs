@@ -10,7 +10,7 @@ use etendue_compare::Verdict;
 use etendue_pipeline::Leader;
 use etendue_report::table::aligned;
 use etendue_store::Failure;
-use etendue_studies::derivative::{beyond_range, derivative};
+use etendue_studies::derivative::derivative;
 use etendue_studies::sweep::{FinishedSweep, SweepPoints, run};
 
 /// The maximum number of undecided planes whose reasons are printed.
@@ -25,17 +25,11 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
         let mut request = args.request();
-        let field = args.derivative.as_ref();
-        let field = field.map(|field| {
-            let value;
-            (value, request) = field.sweep(request.clone())?;
-            Ok::<_, Failure>((field, value))
-        });
-        let field = field.transpose()?;
-        let all = SweepPoints::read(&request).map_err(|failure| match field {
-            Some((field, _)) => beyond_range(field, failure),
-            None => failure,
-        })?;
+        let field = match &args.derivative {
+            Some(field) => Some((field, field.sweep(&mut request)?)),
+            None => None,
+        };
+        let all = SweepPoints::read(&request)?;
         let kind = if field.is_some() {
             "derivative"
         } else {

@@ -6,14 +6,16 @@
 //! the difference to the next, in pairs of batches too, and the largest step is taken at which the
 //! bias is below the noise. Theory is compared over the same step, so bias does not enter.
 
-use crate::fit::{FitData, FitModel, FitPlane, size, spread};
+use crate::fit::{size, spread};
 use crate::sweep::values::{Setting, Sweep, real_value};
 use crate::sweep::{self, FinishedSweep, SweepPoints, SweepRequest};
-use etendue_compare::{Estimate, MIN_DIFFERING, NormalEquations, Residuals, Verdict, sidak};
-use etendue_field::{Complex, Slices, percent, tidy, uncertain};
+use etendue_compare::{Class, Estimate, MIN_DIFFERING, NormalEquations, Residuals, Verdict, sidak};
+use etendue_field::{Complex, Slices, VirtualPlane, percent, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Work, batches_of_run, load};
+use etendue_predict::{Applicability, predict};
 use etendue_report::table;
-use etendue_scene::{RunFile, dotted, unit};
+use etendue_scene::{Scene, dotted, unit};
+use etendue_spectrum::{Measurement, estimate};
 use etendue_store::Failure;
 use etendue_store::npz::Npz;
 use ndarray::Array3;
@@ -115,23 +117,32 @@ impl DerivedField {
         })
     }
 
-    /// The value of the field in a scene, and the request of a sweep over the values from which
-    /// the derivative is measured.
-    pub fn sweep(&self, mut request: SweepRequest) -> Result<(f64, SweepRequest), Failure> {
+    /// Turns a request into that of a sweep over the values from which the derivative is measured.
+    /// Returns the value of the field in the scene.
+    pub fn sweep(&self, request: &mut SweepRequest) -> Result<f64, Failure> {
         let arguments = request.scene.arguments;
         let (source, sweeps) = request.settings();
+        let argument = arguments.with("derivative", &self.path);
         if let Some(Sweep { path, .. }) = sweeps.first() {
             return Err(Failure::bad_input(format!(
-                "{} has several values; allowed beside {}: one value",
+                "{} has several values; allowed beside {argument}: one value",
                 arguments.with("set", path),
-                arguments.with("derivative", &self.path),
             )));
         }
-        let scene = load::scene(&source, |_| ())?;
-        let value = real_value(&scene, &self.path, arguments.with("derivative", &self.path))?;
+        let value = real_value(&load::scene(&source, |_| ())?, &self.path, argument)?;
+        let step = self.step.unwrap_or(FIRST_STEP * size(value));
+        for end in [value - step, value + step] {
+            let point = vec![(self.path.clone(), end)];
+            sweep::scene_at(&source, &point, |_| ()).map_err(|failure| Failure {
+                message: format!(
+                    "{}: a value at a step of the derivative by {} is not allowed; --derivative FIELD=STEP states a smaller step",
+                    failure.message, self.path
+                ),
+                ..failure
+            })?;
+        }
         let is_own = |of: &Setting| matches!(of, Setting::Value(path, _) if *path == self.path);
         request.set.retain(|setting| !is_own(setting));
-        let step = self.step.unwrap_or(FIRST_STEP * size(value));
         // The steps up to the largest, from low values to high.
         let below = STEPS.iter().map(|share| -share);
         let moves = below.chain(STEPS.iter().rev().copied());
@@ -141,18 +152,7 @@ impl DerivedField {
             values,
         }));
         request.common_seed = true;
-        Ok((value, request))
-    }
-}
-
-/// Names the step where a value of the field is not allowed.
-pub fn beyond_range(field: &DerivedField, failure: Failure) -> Failure {
-    Failure {
-        message: format!(
-            "{}: a value at a step of the derivative by {} is not allowed; --derivative FIELD=STEP states a smaller step",
-            failure.message, field.path
-        ),
-        ..failure
+        Ok(value)
     }
 }
 
@@ -183,21 +183,21 @@ pub fn derivative(
     let names: Vec<String> = arrays.chain([TABLE.to_owned()]).collect();
     let sweep = sweep::begin(request, points, folder, &names, workers, reporter)?;
     let stage = reporter.begin(Work::Stage("measuring derivatives"));
-    let read = |i: usize| {
-        let scene = &points.scenes[i];
-        let batches = batches_of_run(&folder.join(&sweep.found[i].folder), scene)?;
-        FitData::of_measurement(&batches, scene)
-    };
-    let ends = |rung: usize| Ok([read(rung)?, read(2 * STEPS.len() - 1 - rung)?]);
-    let ends: Vec<[FitData; 2]> = (0..STEPS.len()).map(ends).collect::<Result<_, Failure>>()?;
+    // The points before and after the value, for each step.
+    let ends = [0, 1, 2].map(|rung| [rung, 2 * STEPS.len() - 1 - rung]);
+    let read = |i: usize| batches_of_run(&folder.join(&sweep.found[i].folder), &points.scenes[i]);
+    let pair = |[a, b]: &[usize; 2]| Ok([read(*a)?, read(*b)?]);
+    let measured: Vec<_> = ends.iter().map(pair).collect::<Result<_, Failure>>()?;
     let of_point = |i: usize| sweep.found[i].point[0].1;
-    let steps = [0, 1, 2].map(|rung| 0.5 * (of_point(2 * STEPS.len() - 1 - rung) - of_point(rung)));
+    let steps = ends.map(|[a, b]| 0.5 * (of_point(b) - of_point(a)));
     let mut files = Vec::new();
     let mut all = Vec::new();
     for (i, plane) in planes.iter().enumerate() {
-        let ladder = Ladder::new(&ends, i, steps);
-        let theory =
-            |rung: usize| theory(field, value, request, &ends[rung][0].planes[i], steps[rung]);
+        let ladder = Ladder::new(plane, &measured, i, steps)?;
+        let theory = |rung: usize| {
+            let scenes = ends[rung].map(|end| &points.scenes[end]);
+            theory(scenes, i, steps[rung])
+        };
         let (rungs, bytes) = ladder.judged(points.base.run.seed, &theory)?;
         files.push((format!("{}/{ARRAYS}", plane.name), bytes));
         all.extend(rungs);
@@ -217,8 +217,10 @@ pub fn derivative(
 
 /// The derivative at one plane for each step.
 struct Ladder<'a> {
-    plane: &'a FitPlane,
+    plane: &'a VirtualPlane,
     steps: [f64; 3],
+    /// The spectrum at the lower value of the largest step.
+    lowest: Array3<Complex>,
     /// ‖S‖ in the middle of the smallest step.
     norm: f64,
     derivatives: Vec<Residuals>,
@@ -233,22 +235,34 @@ struct TheoryDifference {
 }
 
 impl<'a> Ladder<'a> {
-    fn new(ends: &'a [[FitData; 2]], i: usize, steps: [f64; 3]) -> Self {
-        let plane = &ends[0][0].planes[i];
-        let middle = ends
-            .last()
-            .map(|[a, b]| &a.planes[i].mean + &b.planes[i].mean);
-        let derivatives = ends.iter().zip(steps).map(|([a, b], step)| {
-            let [a, b] = [a, b].map(|end| end.planes[i].batches.iter().map(|one| one.half.view()));
-            let pairs = Residuals::of_pairs(plane.plane.grid, a, b);
-            pairs.scaled(1.0 / (2.0 * step))
+    fn new(
+        plane: &'a VirtualPlane,
+        measured: &[[Measurement; 2]],
+        i: usize,
+        steps: [f64; 3],
+    ) -> Result<Self, Failure> {
+        let mean = |of: &Measurement| {
+            let slices = estimate::slices(of, i).map_err(Failure::cannot_run)?;
+            Ok::<_, Failure>(slices.mean)
+        };
+        let [first, .., [below, above]] = measured else {
+            unreachable!("there are several steps")
+        };
+        let (mut middle, above) = (mean(below)?, mean(above)?);
+        middle.half += &above.half;
+        let derivatives = measured.iter().zip(steps).map(|(pair, step)| {
+            let [a, b] = pair
+                .each_ref()
+                .map(|end| end.at_plane(i).map(|batch| batch.slices.half.view()));
+            Residuals::of_pairs(plane.grid, a, b).scaled(1.0 / (2.0 * step))
         });
-        Self {
+        Ok(Self {
             plane,
             steps,
-            norm: middle.map_or(0.0, |twice| 0.5 * norm(&twice)),
+            lowest: mean(&first[0])?.half,
+            norm: 0.5 * middle.norm(),
             derivatives: derivatives.collect(),
-        }
+        })
     }
 
     /// Each step, and the arrays of the chosen step.
@@ -267,7 +281,7 @@ impl<'a> Ladder<'a> {
         let last = STEPS.len() - 1;
         let chosen = rungs.iter().position(is_settled).unwrap_or(last);
         rungs[chosen].is_chosen = true;
-        let grid = &self.plane.plane.grid;
+        let grid = &self.plane.grid;
         let of = &self.derivatives[chosen];
         let npz = Npz::default()
             .add_half_axes(grid)?
@@ -285,7 +299,8 @@ impl<'a> Ladder<'a> {
         let of = &self.derivatives[k];
         let has_errors = of.differing() >= MIN_DIFFERING;
         let variance = of.variance();
-        let length = norm(&of.mean());
+        let (grid, half) = (self.plane.grid, of.mean());
+        let length = Slices { grid, half }.norm();
         let beside = &self.derivatives[if k == 0 { 1 } else { k - 1 }];
         let apart = of.minus(beside);
         let (square, error) = apart.squared();
@@ -298,12 +313,12 @@ impl<'a> Ladder<'a> {
             let residuals =
                 Residuals::between_samples(&batches, &theory.slices, &theory.replicates);
             share = theory.share(&residuals);
-            let measured = &self.plane.mean / Complex::from(2.0 * self.steps[k]);
+            let measured = &self.lowest / Complex::from(2.0 * self.steps[k]);
             let p = residuals.within_error_of(&measured).p_value(seed);
             p_value = p.filter(|_| theory.has_known_errors);
         }
         PlaneDerivative {
-            plane: self.plane.plane.name.clone(),
+            plane: self.plane.name.clone(),
             step: self.steps[k],
             is_chosen: false,
             size: length / self.norm,
@@ -313,13 +328,6 @@ impl<'a> Ladder<'a> {
             p_value,
         }
     }
-}
-
-fn norm(half: &Array3<Complex>) -> f64 {
-    half.iter()
-        .map(|value| value.norm_sqr())
-        .sum::<f64>()
-        .sqrt()
 }
 
 impl TheoryDifference {
@@ -351,27 +359,21 @@ impl TheoryDifference {
     }
 }
 
-/// Theory's central difference at a plane; `None` if theory has no prediction there.
-fn theory(
-    field: &DerivedField,
-    value: f64,
-    request: &SweepRequest,
-    plane: &FitPlane,
-    step: f64,
-) -> Option<TheoryDifference> {
-    let point = |value: f64| vec![(field.path.clone(), value)];
-    let (source, _) = request.settings();
-    let options = |run: &mut RunFile| {
-        run.photons = ACCURACY.saturating_mul(request.photons.unwrap_or(run.photons));
+/// Theory's central difference at plane `i` between two scenes; `None` if theory has no prediction
+/// there, or if the windows differ.
+fn theory(scenes: [&Scene; 2], i: usize, step: f64) -> Option<TheoryDifference> {
+    if scenes[0].planes[i].window != scenes[1].planes[i].window {
+        return None;
+    }
+    let end = |scene: &Scene| {
+        let mut scene = scene.clone();
+        scene.run.photons = ACCURACY.saturating_mul(scene.run.photons);
+        let plane = &scene.planes[i];
+        let theory = Applicability::new(&scene, plane);
+        (theory.class() != Class::Reference).then(|| predict(&scene, plane, &theory))
     };
-    let scene_at = |values: &[f64]| sweep::scene_at(&source, &point(values[0]), options);
-    let model = FitModel {
-        scene_at: &scene_at,
-        fields: std::slice::from_ref(&field.path),
-        planes: std::slice::from_ref(plane),
-    };
-    let end = |by: f64| model.predict(&[value + by], 1.0).ok()?.pop();
-    let [a, b] = [end(-step)?, end(step)?];
+    let [a, b] = scenes.map(end);
+    let (a, b) = (a?, b?);
     let scale = Complex::from(0.5 / step);
     let between = |a: &Slices, b: &Slices| Slices {
         grid: b.grid,

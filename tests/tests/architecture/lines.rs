@@ -93,8 +93,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "studies",
         4009,
-        6276,
-        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search; derivatives at the ends of ranges",
+        6286,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search; derivatives at the ends of ranges, from scenes that are read once",
     ),
     (
         "theory",

@@ -90,7 +90,7 @@ fn cropped<T: Clone>(all: &Array3<T>, grid: &SliceGrid) -> Array3<T> {
 
 impl FitModel<'_> {
     /// The prediction of each measured plane, at frequencies up to a share of the largest.
-    pub(crate) fn predict(&self, values: &[f64], share: f64) -> Result<Vec<Prediction>, Failure> {
+    pub(super) fn predict(&self, values: &[f64], share: f64) -> Result<Vec<Prediction>, Failure> {
         let scene = (self.scene_at)(values)?;
         let each = self.planes.iter().map(|data| {
             let mut plane = scene.planes[data.index].clone();

@@ -53,10 +53,13 @@ impl PointDifferences {
         together: bool,
     ) -> Result<Self, Failure> {
         let mut all = Self::default();
+        // The batches of the point before, if they are read.
+        let mut before: Option<Measurement> = None;
         for (pair, scenes) in found.windows(2).zip(scenes.windows(2)) {
             let [a, b] = [&pair[0], &pair[1]];
             let values = a.point.iter().zip(&b.point);
             let changes = values.filter(|(a, b)| a != b).count();
+            let earlier = before.take();
             if changes != 1 && !together {
                 continue;
             }
@@ -66,8 +69,13 @@ impl PointDifferences {
                 ALPHA,
             )?);
             if diff["pairs"] == true {
-                let [of_a, of_b] = [0, 1].map(|i| batches_of_run(&folders[i], &scenes[i]));
-                all.add([a, b], &diff, [&of_a?, &of_b?])?;
+                let of_a = match earlier {
+                    Some(read) => read,
+                    None => batches_of_run(&folders[0], &scenes[0])?,
+                };
+                let of_b = batches_of_run(&folders[1], &scenes[1])?;
+                all.add([a, b], &diff, [&of_a, &of_b])?;
+                before = Some(of_b);
             }
         }
         Ok(all)
