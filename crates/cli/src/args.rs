@@ -19,7 +19,7 @@ pub(crate) use run::{
     CheckArgs, CompareArgs, ConvergeArgs, DiffArgs, Expect, ExportArgs, MeasureArgs, PredictArgs,
     RunArgs, SchemaArgs, SplitArgs,
 };
-pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs, WorkArgs};
+pub(crate) use shared::{ThreadArgs, WorkArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
 pub(crate) use variance::{VarianceArgs, files, samplers};
 #[cfg(feature = "worlds")]

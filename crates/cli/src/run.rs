@@ -7,7 +7,6 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::{report, warnings};
 use etendue_compare::Verdict;
-use etendue_pipeline::load::SceneSource;
 use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Checkpointing, Leader, Run, Tracing, field};
 use etendue_report::page::NAME;
@@ -16,7 +15,7 @@ use etendue_report::{OutputOptions, Stopwatch, announcement, check_explorer, pla
 use etendue_scene::{Color, Scene};
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{ArgumentStyle, Failure, Method, Results, SUMMARY, below};
+use etendue_store::{ArgumentStyle, Failure, Results, SUMMARY, below};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -70,14 +69,14 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
 
 fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
-    let mut run = args.photons.run(&args.scene)?;
+    let mut run = args.run()?;
     let folder = args.out.or_named(&run.scene.name);
     on_threads(&args.work.threads, || {
         let terminal = Terminal::new(args.work.quiet);
         check(args, &run, &folder)?;
         let mut results = Some(claim(args, &run, &folder)?);
         if args.resume {
-            if let Some(code) = finished(args, &run.scene, &folder) {
+            if let Some(code) = finished(args, &run, &folder) {
                 return Ok(code);
             }
             // Several processes share the folder, so no process claims the result until the
@@ -86,24 +85,17 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         }
         announce(args, &run.scene);
         let mut watch = Stopwatch::start();
-        let (measurement, predictions) = if let Some(other) = twin(args, &run)? {
-            let found = run.measured_against(&other, &terminal)?;
-            watch.lap("trace");
-            found
-        } else {
-            let Some(measurement) = run.trace(tracing(args, workers, &folder), &terminal)? else {
-                return finished(args, &run.scene, &folder).ok_or_else(|| gone(&folder));
-            };
-            watch.lap("trace");
-            let predictions = run.predictions(workers, &terminal)?;
-            watch.lap("predict");
-            (measurement, predictions)
+        let Some(traced) = run.trace(tracing(args, workers, &folder), &terminal)? else {
+            return finished(args, &run, &folder).ok_or_else(|| gone(&folder));
         };
+        watch.lap("trace");
+        let (measurement, predictions) = run.predicted(traced, workers, &terminal)?;
+        watch.lap("predict");
         let mut results = match results {
             Some(results) => results,
             None => {
                 let results = claim(args, &run, &folder)?;
-                if let Some(code) = finished(args, &run.scene, &folder) {
+                if let Some(code) = finished(args, &run, &folder) {
                     return Ok(code);
                 }
                 results
@@ -125,23 +117,6 @@ fn run_scene(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure
         CheckpointStore::of(&folder, &case.scene, case.method).remove();
         Ok(code)
     })
-}
-
-/// The scene of `--against`, with the settings of the run.
-fn twin(args: &RunArgs, run: &Run) -> Result<Option<Run>, Failure> {
-    let Some(path) = &args.against else {
-        return Ok(None);
-    };
-    if run.method != Method::Photons {
-        return Err(Failure::bad_input(
-            "--against traces photons; allowed: --method photons",
-        ));
-    }
-    let settings = &run.scene.file.run;
-    let source = SceneSource::file(path, &[]);
-    let other = Run::read(&source, run.method, |run| *run = settings.clone())?;
-    other.check_limits()?;
-    Ok(Some(other))
 }
 
 /// Prints warnings, and fails if the run is too large or its folder has the result of another
@@ -216,9 +191,9 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
 
 /// Returns the exit code of a run that is already finished, and prints the verdict of this run
 /// again. Also removes the batches that a process has left in the folder.
-fn finished(args: &RunArgs, scene: &Scene, folder: &Path) -> Option<u8> {
-    let summary = summary_of(folder, scene, args.photons.method)?;
-    CheckpointStore::of(folder, scene, args.photons.method).remove();
+fn finished(args: &RunArgs, run: &Run, folder: &Path) -> Option<u8> {
+    let summary = summary_of(folder, &run.scene, run.method)?;
+    CheckpointStore::of(folder, &run.scene, run.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
     if !args.is_quiet() {
         say(&format!(

@@ -1,6 +1,6 @@
 //! Runs commands whose work several processes share.
 
-use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
+use crate::args::{Cli, Command, RunArgs};
 use crate::exit::{ended, not_parsed};
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
@@ -24,7 +24,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         }
     };
     if !is_shared(&command) {
-        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error, --rgb and --against";
+        let message = "this command cannot use several processes; allowed: predict, sweep, and run without --target-error and --rgb";
         return ended(Err(Failure::bad_input(message)), !leads);
     }
     if !leads {
@@ -47,11 +47,8 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
 fn is_shared(command: &Command) -> bool {
     match command {
         Command::Run(RunArgs {
-            target_error,
-            rgb,
-            against,
-            ..
-        }) => target_error.is_none() && !rgb && against.is_none(),
+            target_error, rgb, ..
+        }) => target_error.is_none() && !rgb,
         command => matches!(command, Command::Predict(_) | Command::Sweep(_)),
     }
 }
@@ -59,10 +56,10 @@ fn is_shared(command: &Command) -> bool {
 /// Carries out the orders of the leading process until this process is dismissed.
 fn follow(command: &Command, workers: &dyn Workers) {
     let followed = match command {
-        Command::Run(args) => follow_scene(&args.scene, &args.photons, &args.work.threads, workers),
-        Command::Predict(args) => {
-            follow_scene(&args.scene, &args.photons, &args.work.threads, workers)
-        }
+        Command::Run(args) => on_threads(&args.work.threads, || follow_run(workers, &args.run()?)),
+        Command::Predict(args) => on_threads(&args.work.threads, || {
+            follow_run(workers, &args.photons.run(&args.scene)?)
+        }),
         Command::Sweep(args) => on_threads(&args.work.threads, || {
             let points = SweepPoints::read(&args.request())?;
             follow_points(workers, points.scenes(), &|number| {
@@ -74,14 +71,4 @@ fn follow(command: &Command, workers: &dyn Workers) {
     if let Err(failure) = followed {
         report_failure(workers, failure);
     }
-}
-
-/// Measures batches and predicts planes of a scene, as the leading process requests.
-fn follow_scene(
-    scene: &SceneArgs,
-    photons: &PhotonArgs,
-    threads: &ThreadArgs,
-    workers: &dyn Workers,
-) -> Result<(), Failure> {
-    on_threads(threads, || follow_run(workers, &photons.run(scene)?))
 }

@@ -222,6 +222,15 @@ fn a_scene_is_measured_against_another() {
     assert_eq!(code, Some(0), "{message}");
     let summary = |name: &str| fs::read(path.join(name).join("summary.json")).unwrap();
     assert_eq!(summary("twin"), summary("again"));
+    let (code, message) = against("--against small.ron --out late --time 1ms");
+    assert_eq!(code, Some(3), "{message}");
+    let (code, message) = against("--against small.ron --out late --resume");
+    assert_eq!(code, Some(0), "{message}");
+    assert_eq!(summary("twin"), summary("late"));
+    // The result of a difference from another scene is another result.
+    let (code, message) = against("--against wide.ron --out late --resume");
+    assert_eq!(code, Some(0), "{message}");
+    assert_ne!(summary("twin"), summary("late"));
     let of = |name: &str| json(&path.join(name).join("summary.json"));
     let (alone, twin) = (of("alone"), of("twin"));
     assert_eq!(twin["method"], "difference");

@@ -112,6 +112,7 @@ fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
 fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
     for line in [
         "run SCENE --threads 1 --photons 2^16 --out OUT",
+        "run SCENE --threads 1 --photons 2^16 --set blockers.0.pitch=0.21 --against SCENE --out OUT",
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {

@@ -63,7 +63,8 @@ pub(crate) fn measured(
         is_late: AtomicBool::default(),
         is_full: AtomicBool::default(),
     };
-    let mut all = Measurement::new(scene.planes.clone());
+    let planes = method.recorded_planes(scene);
+    let mut all = Measurement::new(planes.to_vec());
     // Batches of an earlier run must not be taken for those of this run.
     if !checkpointing.resume {
         kept.remove();
@@ -87,7 +88,7 @@ pub(crate) fn measured(
                 let packing = Packing { scene, method };
                 workers.measure(packing, &*source, missing, &keeper)?
             }
-            None => measure_watched(&*source, &scene.planes, &mut missing.into_iter(), &keeper),
+            None => measure_watched(&*source, &planes, &mut missing.into_iter(), &keeper),
         };
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {

@@ -67,8 +67,8 @@ fn measured(
         .map(|(piece, own)| packing.unpacked_partial(source, piece, own))
         .collect::<Result<Vec<PartialBatch>, _>>()?;
     let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
-    let planes = &run.scene.planes;
-    let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
+    let (found, begun) =
+        measure_watched(source, &packing.planes(), &mut batches.into_iter(), &until);
     let done = found
         .batches()
         .map(|batch| Ok(whole(batch.index, packing.packed(batch)?)));

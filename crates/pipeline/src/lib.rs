@@ -31,6 +31,7 @@ mod run;
 mod summary;
 mod target;
 mod twin;
+mod twin_photons;
 mod workers;
 
 pub use checkpoint::Checkpointing;

@@ -3,10 +3,9 @@
 use crate::method::source;
 use crate::reporter::{Reporter, Work};
 use etendue_compare::Prediction;
-use etendue_field::PhotonSource;
 use etendue_predict::Applicability;
 use etendue_scene::Scene;
-use etendue_spectrum::Measurement;
+use etendue_spectrum::{Measurement, measure};
 use etendue_store::{Failure, Method};
 use std::ops::Range;
 
@@ -32,24 +31,11 @@ pub fn measured(
     batches: Range<u32>,
     reporter: &dyn Reporter,
 ) -> Result<Measurement, Failure> {
-    Ok(measured_by(
-        &*source(scene, method)?,
-        scene,
-        batches,
-        reporter,
-    ))
-}
-
-/// Measures some batches of the light of `source` at all planes of a scene.
-pub(crate) fn measured_by(
-    source: &dyn PhotonSource,
-    scene: &Scene,
-    batches: Range<u32>,
-    reporter: &dyn Reporter,
-) -> Measurement {
+    let source = source(scene, method)?;
     let photons = batches.clone().map(|batch| source.emitted(batch)).sum();
     let bar = reporter.begin(Work::Photons(photons));
-    etendue_spectrum::measure(source, &scene.planes, batches, &|photons| {
+    let planes = method.recorded_planes(scene);
+    Ok(measure(&*source, &planes, batches, &|photons| {
         bar.advance(photons);
-    })
+    }))
 }

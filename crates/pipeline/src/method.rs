@@ -1,6 +1,7 @@
 //! Provides the source of photons for each method of measurement.
 
 use crate::file_rays::FileRays;
+use crate::twin_photons::TwinPhotons;
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
@@ -8,6 +9,9 @@ use etendue_trace::{AllLights, Backward, Tracer, finds};
 
 /// The source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
+    if let (Method::Difference, Some(other)) = (method, &scene.against) {
+        return Ok(Box::new(TwinPhotons::new(scene, other)));
+    }
     if !scene.other_lights.is_empty() {
         return Ok(match method {
             Method::Photons | Method::Difference => Box::new(AllLights::photons(scene)),
@@ -32,18 +36,6 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     match method {
         Method::Backward | Method::Given => source(scene, method).map(drop),
         Method::Photons | Method::Even | Method::Difference => Ok(()),
-    }
-}
-
-/// The sources of photons of two scenes that are traced in pairs.
-pub fn pair(scenes: [&Scene; 2]) -> [Box<dyn PhotonSource>; 2] {
-    fn boxed<S: PhotonSource + 'static>(sources: [S; 2]) -> [Box<dyn PhotonSource>; 2] {
-        sources.map(|source| Box::new(source) as Box<dyn PhotonSource>)
-    }
-    match scenes.map(|scene| scene.other_lights.len()) {
-        [0, 0] => boxed(Tracer::pair(scenes)),
-        [a, b] if a == b => boxed(AllLights::pair(scenes)),
-        _ => boxed(scenes.map(AllLights::photons)),
     }
 }
 

@@ -110,7 +110,7 @@ impl Run {
     pub fn measured_scene(self, reporter: &dyn Reporter) -> Result<MeasuredScene, Failure> {
         let all = 0..self.scene.run.batches;
         let measurement = measured(&self.scene, self.method, all, reporter)?;
-        let predictions = self.predictions(None, reporter)?;
+        let (measurement, predictions) = self.predicted(measurement, None, reporter)?;
         Ok(self.with(measurement, predictions))
     }
 
@@ -134,6 +134,9 @@ impl Run {
 
     /// Fails if a run would take too long, or would not fit into the memory of this machine.
     pub fn check_limits(&self) -> Result<(), Failure> {
+        if let Some(other) = self.other() {
+            other.check_limits()?;
+        }
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())
     }
 

@@ -17,6 +17,10 @@ pub struct Summary {
     /// BLAKE3 hash of the scene, which covers the scene file with defaults and overrides, and the
     /// files that the scene names.
     pub scene_hash: String,
+    /// BLAKE3 hash of the scene from which the difference was measured, if the method is
+    /// `difference`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against: Option<String>,
     /// The scene as it was run, defaults and overrides included.
     pub scene_file: SceneFile,
     /// Version of this program.
@@ -85,6 +89,7 @@ impl Summary {
         Self {
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
+            against: scene.against.as_ref().map(|other| other.hash()),
             scene_file: scene.file.clone(),
             version: VERSION,
             seed: scene.run.seed,

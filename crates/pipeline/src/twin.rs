@@ -1,41 +1,55 @@
 //! Measures a scene by its difference from another scene, whose spectra theory knows.
 
-use crate::measure::measured_by;
-use crate::method::pair;
 use crate::reporter::Reporter;
 use crate::run::Run;
+use crate::workers::Leader;
 use etendue_compare::{Class, Prediction};
 use etendue_field::{Projection, Slices, VirtualPlane};
 use etendue_spectrum::Measurement;
 use etendue_store::{Failure, Method};
 
 impl Run {
-    /// The measurement and the predictions of this run, whose method is the difference from `other`
-    /// ([`Measurement::difference_from`]). Both scenes are traced with the same photons.
+    /// This run, measured by its difference from `other` ([`Measurement::difference`]). Both scenes
+    /// are traced with the same photons.
     ///
     /// The expectation of the measurement is the spectrum of this scene if the predictions of
-    /// `other` are right, so it must not be used to judge them. Errors of these predictions are
-    /// added to the errors of the predictions of this scene.
+    /// `other` are right, so it must not be used to judge them.
     ///
     /// # Errors
     /// When the planes or the settings of the two runs differ, or when theory does not apply to a
     /// plane of `other`.
-    pub fn measured_against(
-        &mut self,
-        other: &Self,
+    pub fn against(mut self, other: Self) -> Result<Self, Failure> {
+        self.check_twin(&other)?;
+        self.method = Method::Difference;
+        self.scene.against = Some(Box::new(other.scene));
+        Ok(self)
+    }
+
+    /// The run of the scene from which the difference is measured.
+    pub(crate) fn other(&self) -> Option<Self> {
+        let other = self.scene.against.as_deref()?.clone();
+        Self::of(other, Method::Photons, Vec::new()).ok()
+    }
+
+    /// The predictions of the planes, and the measurement to which they belong: what was traced,
+    /// or its difference from the other scene, whose predictions are then added. The errors of
+    /// these predictions are added to those of this scene.
+    ///
+    /// # Errors
+    /// When another method of measurement replaces theory at a plane, and finds no light.
+    pub fn predicted(
+        &self,
+        traced: Measurement,
+        workers: Option<&Leader<'_>>,
         reporter: &dyn Reporter,
     ) -> Result<(Measurement, Vec<Prediction>), Failure> {
-        self.check_twin(other)?;
-        self.method = Method::Difference;
+        let mut predictions = self.predictions(workers, reporter)?;
+        let Some(other) = self.other() else {
+            return Ok((traced, predictions));
+        };
         let known = other.predictions(None, reporter)?;
-        let [of_other, own] = pair([&other.scene, &self.scene]).map(|source| {
-            let all = 0..self.scene.run.batches;
-            measured_by(&*source, &self.scene, all, reporter)
-        });
         let expected = known.iter().map(|of| (&of.slices, &of.projection));
         let expected: Vec<(&Slices, &Projection)> = expected.collect();
-        let measurement = own.difference_from(&of_other, &expected);
-        let mut predictions = self.predictions(None, reporter)?;
         for (prediction, known) in predictions.iter_mut().zip(&known) {
             prediction.add_errors_of(known);
             let name = &other.scene.name;
@@ -44,7 +58,7 @@ impl Run {
             );
             prediction.steps.push(step);
         }
-        Ok((measurement, predictions))
+        Ok((traced.difference(&expected), predictions))
     }
 
     /// Fails if another run cannot be subtracted from this one.

@@ -98,8 +98,7 @@ impl Resolver<'_> {
         // If the frame is unknown or too far away, the checks continue with the identity frame,
         // which leaves all values unchanged.
         let is_allowed = |frame: &Frame| frame.origin.abs().cmple(DVec3::splat(MAX_NUMBER)).all();
-        let checked = frame.filter(is_allowed);
-        let checked = checked.unwrap_or(Frame::IDENTITY);
+        let checked = frame.filter(is_allowed).unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
         let surfaces = self.surfaces(&file, &checked);
         let meshes = self.meshes(&file, &checked);
@@ -143,6 +142,7 @@ impl Resolver<'_> {
                 emission: file.run.emission,
                 sampling: file.run.sampling,
             },
+            against: None,
             file,
         };
         scene.other_lights = self.other_lights(&scene);

@@ -38,6 +38,9 @@ pub struct Scene {
     pub picture_bytes: usize,
     /// The settings of the measurement.
     pub run: RunSettings,
+    /// The scene from which the difference of this scene is measured, if the method of measurement
+    /// is that difference. It has the same planes, with their own places.
+    pub against: Option<Box<Self>>,
 }
 
 /// The central ray, which consists of straight legs from surface to surface. Positions and slopes
@@ -272,7 +275,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// This scene with only the planes whose indices are given.
+    /// This scene alone, with only the planes whose indices are given.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         let kept: Vec<VirtualPlane> = planes.iter().map(|i| self.planes[*i].clone()).collect();
@@ -285,6 +288,7 @@ impl Scene {
         Self {
             other_lights: other_lights.collect(),
             planes: kept,
+            against: None,
             ..self.clone()
         }
     }

@@ -158,17 +158,19 @@ impl Measurement {
     }
 
     /// The measurement of a scene by its difference from another one: the slices and the projection of
-    /// each batch become B_b − A_b + F. `self` holds B_b, `other` holds A_b, and `known` holds the
-    /// expected slices and projection F of A at each plane. If equal batches use the same random
+    /// each batch become B_b − A_b + F. The first half of the planes holds B_b, the second A_b, and
+    /// `known` the expected slices and projection F of A at each plane. If both use the same random
     /// numbers, most of their noise cancels. Tallies, ledger and moments remain those of B.
     ///
     /// # Panics
     ///
-    /// Panics if the two measurements or `known` have different numbers or frequencies of planes.
+    /// Panics if the planes of A have other frequencies than those of B, or than `known`.
     #[must_use]
-    pub fn difference_from(mut self, other: &Self, known: &[(&Slices, &Projection)]) -> Self {
-        for (of_b, of_a) in self.batches.values_mut().zip(other.batches()) {
-            let planes = of_b.planes.iter_mut().zip(&of_a.planes);
+    pub fn difference(mut self, known: &[(&Slices, &Projection)]) -> Self {
+        self.planes.truncate(known.len());
+        for batch in self.batches.values_mut() {
+            let of_a = batch.planes.split_off(known.len());
+            let planes = batch.planes.iter_mut().zip(of_a);
             for ((b, a), (slices, projection)) in planes.zip(known) {
                 // In this order, equal batches give exactly F.
                 b.slices.half -= &a.slices.half;

@@ -1,6 +1,9 @@
 //! The method of measuring light.
 
+use etendue_field::VirtualPlane;
+use etendue_scene::Scene;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// The method of measuring light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,6 +30,22 @@ impl Method {
         match self {
             Self::Photons | Self::Even => true,
             Self::Backward | Self::Difference | Self::Given => false,
+        }
+    }
+
+    /// The planes at which the method records light: those of the scene, and for a difference also
+    /// those of the other scene, whose names get an ending that names of scenes cannot have.
+    #[must_use]
+    pub fn recorded_planes(self, scene: &Scene) -> Cow<'_, [VirtualPlane]> {
+        match &scene.against {
+            Some(other) if self == Self::Difference => {
+                let others = other.planes.iter().map(|plane| VirtualPlane {
+                    name: format!("{}.other", plane.name),
+                    ..plane.clone()
+                });
+                scene.planes.iter().cloned().chain(others).collect()
+            }
+            _ => Cow::Borrowed(&scene.planes),
         }
     }
 

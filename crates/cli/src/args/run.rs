@@ -6,7 +6,10 @@ use super::shared::{
 };
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
+use etendue_pipeline::Run;
+use etendue_pipeline::load::SceneSource;
 use etendue_pipeline::photons::Save;
+use etendue_store::{Failure, Method};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -54,7 +57,7 @@ pub(crate) struct RunArgs {
     /// photons are traced through both, and the prediction of this scene is added. The difference
     /// has less noise the more alike the scenes are. The seed and the settings of the run are those
     /// of SCENE.ron
-    #[arg(long, value_name = "OTHER.ron", conflicts_with_all = ["resume", "time", "target_error", "rgb", "save"])]
+    #[arg(long, value_name = "OTHER.ron", conflicts_with_all = ["target_error", "rgb", "save"])]
     pub(crate) against: Option<PathBuf>,
 
     /// Run the scene once for each of red, green and blue, with the same seed. The results are in
@@ -83,6 +86,23 @@ pub(crate) struct RunArgs {
 }
 
 impl RunArgs {
+    /// The run; the scene of `--against` has its settings.
+    pub(crate) fn run(&self) -> Result<Run, Failure> {
+        let run = self.photons.run(&self.scene)?;
+        let Some(path) = &self.against else {
+            return Ok(run);
+        };
+        if run.method != Method::Photons {
+            return Err(Failure::bad_input(
+                "--against traces photons; allowed: --method photons",
+            ));
+        }
+        let settings = &run.scene.file.run;
+        let source = SceneSource::file(path, &[]);
+        let other = Run::read(&source, run.method, |run| *run = settings.clone())?;
+        run.against(other)
+    }
+
     /// Checks whether the command prints no tables.
     pub(crate) fn is_quiet(&self) -> bool {
         self.work.quiet || self.json

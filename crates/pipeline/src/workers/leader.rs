@@ -91,8 +91,12 @@ impl<'a> Leader<'a> {
         };
         let own = || {
             let mut batches = std::iter::from_fn(|| left.next().map(taken));
-            let planes = &packing.scene.planes;
-            Ok(measure_watched(source, planes, &mut batches, watch))
+            Ok(measure_watched(
+                source,
+                &packing.planes(),
+                &mut batches,
+                watch,
+            ))
         };
         let give = |number| packing.packed_partial(&taken(number));
         let mut others = Vec::new();

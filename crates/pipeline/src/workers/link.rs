@@ -3,6 +3,7 @@
 
 use etendue_scene::Scene;
 use etendue_store::VERSION;
+use std::iter;
 
 /// Processes that work together, over any transport of bytes. Number 0 leads.
 pub trait Workers: Sync {
@@ -30,6 +31,7 @@ pub trait Workers: Sync {
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
     let words: String = scenes
         .into_iter()
+        .flat_map(|scene| iter::once(scene).chain(scene.against.as_deref()))
         .map(|scene| format!(" {} {}", scene.hash(), scene.run.seed))
         .collect();
     format!("{VERSION} {}", blake3::hash(words.as_bytes()).to_hex())

@@ -1,11 +1,12 @@
 //! Encodes batches as bytes, for another process.
 
 use super::message::{Packed, Piece};
-use etendue_field::PhotonSource;
+use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::{Batch, PartialBatch};
 use etendue_store::batches::Held;
 use etendue_store::{Failure, Method, checkpoints};
+use std::borrow::Cow;
 
 /// Encodes batches of a scene, measured by a method, as bytes, and decodes them.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +18,14 @@ pub struct Packing<'a> {
 }
 
 impl Packing<'_> {
+    /// The planes of each batch.
+    pub(crate) fn planes(&self) -> Cow<'_, [VirtualPlane]> {
+        self.method.recorded_planes(self.scene)
+    }
+
     /// A batch as bytes. Fails if there is not enough memory for the bytes.
     pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
-        checkpoints::packed(&self.scene.planes, batch)
+        checkpoints::packed(&self.planes(), batch)
     }
 
     /// The batch with this number, decoded from the bytes of [`Self::packed`]. The batch
@@ -37,7 +43,7 @@ impl Packing<'_> {
             photons: source.emitted(number),
             batches: number..number.saturating_add(1),
         };
-        checkpoints::unpacked(bytes, &held, &self.scene.planes)
+        checkpoints::unpacked(bytes, &held, &self.planes())
     }
 
     /// The first parts of a batch as bytes.
