@@ -18,8 +18,8 @@ use ndarray::{Array1, Array2, Axis, stack};
 /// The number of seeds.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(crate) struct FitOptions {
-    /// Number of seeds of each scene.
-    #[arg(long, default_value_t = 40)]
+    /// Number of seeds of each scene; where predictions are nets, a sixth.
+    #[arg(long, default_value_t = 240)]
     pub(crate) seeds: u64,
 }
 
@@ -100,6 +100,14 @@ impl FitScene {
         etendue_scene::resolve("fit", file, ".".as_ref(), u64::MAX).map_err(Failure::bad_input)
     }
 
+    /// The number of seeds out of `all`: fits of predictions by nets take long.
+    fn seeds(&self, all: u64) -> u64 {
+        match self.text.contains("Reflects") {
+            true => (all / 6).max(1),
+            false => all,
+        }
+    }
+
     fn truth(&self) -> Vec<f64> {
         let scene = self.with(&[], 1).expect("a sound scene");
         let value = |path: &&str| scene.file.value(path).ok().and_then(|value| value.as_f64());
@@ -122,8 +130,8 @@ impl FitScene {
     }
 }
 
-/// The number of seeds is divided by this number where a fit takes long: from far starts, of wrong
-/// models, and where predictions are nets.
+/// The number of seeds is divided by this number where a fit takes long: from far starts, and of
+/// wrong models.
 const FEWER: u64 = 10;
 
 /// All sections.
@@ -154,7 +162,7 @@ impl SeedFits {
     fn new(scene: &'static FitScene, seeds: u64) -> Self {
         let truth = scene.truth();
         let starts = near(&truth);
-        let all = in_parallel(1..=seeds, "seeds", |seed| {
+        let all = in_parallel(1..=scene.seeds(seeds), "seeds", |seed| {
             let measurement = traced(&scene.with(&[], seed).expect("sound"));
             let fitted = scene.fitted(&measurement, &starts).expect("a fit");
             (fitted, BatchSums::new(&measurement))
@@ -321,6 +329,7 @@ fn error_row(fits: &SeedFits, i: usize) -> Row {
 fn starts(seeds: u64) -> ReportSection {
     let row = |scene: &'static FitScene| {
         let truth = scene.truth();
+        let seeds = scene.seeds(seeds);
         let arrived = in_parallel(1..=seeds, "starts", |seed| {
             let measurement = traced(&scene.with(&[], seed).expect("sound"));
             let word = |i: usize| unit(words(seed, Stream::Flip, i as u64, 0)[0]);
@@ -444,6 +453,7 @@ fn wrong(seeds: u64) -> ReportSection {
         free: &["surfaces.0.event.Reflects.brdf.lobe.Ggx", "light.radiance"],
         ..beckmann
     };
+    let seeds = beckmann.seeds(seeds);
     let row = |(model, is_right): (FitScene, bool)| {
         let rejected = in_parallel(1..=seeds, "fits", |seed| {
             let measured = FitScene {
