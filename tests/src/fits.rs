@@ -132,7 +132,7 @@ impl FitScene {
 
 /// The number of seeds is divided by this number where a fit takes long: from far starts, and of
 /// wrong models.
-const FEWER: u64 = 10;
+const FEWER: u64 = 40;
 
 /// All sections.
 pub(crate) fn sections(options: FitOptions) -> Vec<ReportSection> {

@@ -21,6 +21,7 @@ mod derivatives;
 mod faults;
 mod fits;
 mod full_radial;
+mod gallery;
 mod hostile;
 mod kills;
 mod nets;
@@ -72,6 +73,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
   cargo run --release -p etendue-validation -- fits         errors of fits over many seeds; writes results/fits.md
   cargo run --release -p etendue-validation -- derivatives  minutes; derivatives of 32 fields by etendue in the same folder
+  cargo run --release -p etendue-validation -- gallery      minutes; texts in figures by etendue in the same folder
   cargo run --release -p etendue-validation -- transform    errors of the slice transform over 20 random scenes
   cargo run --release -p etendue-validation -- rows         an hour; table1, shading and every row of Table 1
   cargo run --release -p etendue-validation -- all          two hours; writes the whole of results/validation.md")]
@@ -194,6 +196,8 @@ enum ValidationCommand {
     /// Measure errors, p and bounds of fits over many seeds, far starts, degenerate scenes and wrong
     /// models; write results/fits.md.
     Fits(fits::FitOptions),
+    /// Search figures of the paper and of random scenes for texts that cannot be read.
+    Gallery(gallery::GalleryOptions),
     /// Compare the slice transform with plain sums over random scenes; exit code 1 if its error is
     /// larger than stated.
     Transform(transform::TransformOptions),
@@ -235,6 +239,7 @@ fn main() -> ExitCode {
         ValidationCommand::Derivatives { photons, seed } => {
             one(derivatives::section(*photons, *seed))
         }
+        ValidationCommand::Gallery(options) => one(gallery::gallery(*options)),
         ValidationCommand::Transform(options) => one(transform::transform(options)),
         ValidationCommand::Plain(options) => one(second::plain(options)),
         ValidationCommand::Second => one(second::second()),

@@ -248,17 +248,18 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
         ticks.find(|ticks| ticks.len() >= 3 && fit(axis, ticks, length, size))
     };
     let first = (usual(TICK_TEXT).unwrap_or_default(), TICK_TEXT);
-    let smaller = SIZES
+    let mut smaller = SIZES
         .into_iter()
         .filter_map(|size| Some((usual(size)?, size)));
-    let mut enough = smaller.filter(|(ticks, _)| ticks.len() >= 3);
+    let mut enough = smaller.clone().filter(|(ticks, _)| ticks.len() >= 3);
     if axis.is_log {
         return enough.next().unwrap_or(first);
     }
     let others = SIZES
         .into_iter()
         .filter_map(|size| Some((unusual(size)?, size)));
-    enough.chain(others).next().unwrap_or(first)
+    let two = smaller.find(|(ticks, _)| ticks.len() >= 2);
+    enough.chain(others).next().or(two).unwrap_or(first)
 }
 
 /// Checks that tick texts at the font size `size` do not overlap. Along a short axis, tick texts
@@ -278,13 +279,24 @@ fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     })
 }
 
-/// The ticks of a vertical axis: one per 36 units of its height, or more if fewer than
-/// three ticks would fit.
+/// Minimum distance between the baselines of tick texts above each other.
+const LINE: f64 = 13.0;
+
+/// The ticks of a vertical axis: one per 36 units of its height, or more if fewer than three ticks
+/// would fit, but so few that their texts do not overlap.
 pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     let most = (height / 36.0).max(2.0);
+    let are_apart = |ticks: &Vec<Tick>| {
+        ticks.windows(2).all(|pair| {
+            let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+            step.abs() * height >= LINE
+        })
+    };
     let closer = (0..7).map(|more| axis.ticks(most + f64::from(more)));
-    let mut enough = closer.filter(|ticks| ticks.len() >= 3);
-    enough.next().unwrap_or_else(|| axis.ticks(most))
+    let mut enough = closer.filter(|ticks| ticks.len() >= 3 && are_apart(ticks));
+    let mut fewer = [most, 1.0].into_iter().map(|most| axis.ticks(most));
+    let few = || fewer.find(are_apart).unwrap_or_default();
+    enough.next().unwrap_or_else(few)
 }
 
 /// The smallest number of the form `digits` × 10ⁿ that is at least `least`, which is

@@ -152,6 +152,9 @@ pub(crate) struct Shading {
     pub(crate) beyond: [bool; 2],
 }
 
+/// The smallest part of a range of colors that is seen.
+const VISIBLE: f64 = 0.01;
+
 impl Shading {
     /// A shading with linear colors on an axis.
     pub(crate) fn linear(colors: Colors, axis: Axis) -> Self {
@@ -182,13 +185,14 @@ impl Shading {
         }
     }
 
-    /// The same shading. If any of `values` are beyond its range, its ends are marked.
+    /// The same shading. If any of `values` are beyond its range by a visible part of it, its ends
+    /// are marked.
     pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
         let [low, high] = self.axis.range();
         for value in values {
             let level = self.level(*value);
-            self.beyond[0] |= level < low;
-            self.beyond[1] |= level > high;
+            self.beyond[0] |= level < low - VISIBLE * (high - low);
+            self.beyond[1] |= level > high + VISIBLE * (high - low);
         }
         self
     }

@@ -21,6 +21,8 @@ pub enum CurveKind {
     Measured,
     /// A line of another colour with small gaps, for a second theory.
     OtherTheory,
+    /// A dotted line of another colour, for a third theory.
+    ThirdTheory,
     /// Large open points with error bars, for a second measurement.
     OtherMeasured,
     /// Thick bars below points, for the errors of their changes.
@@ -34,6 +36,7 @@ impl CurveKind {
             Self::Theory => Some(THEORY),
             Self::Rival => Some(RIVAL),
             Self::OtherTheory => Some(OTHER_THEORY),
+            Self::ThirdTheory => Some(THIRD_THEORY),
             Self::Measured | Self::OtherMeasured | Self::Change => None,
         }
     }
@@ -41,7 +44,7 @@ impl CurveKind {
     /// The layer in which a curve is drawn: points over lines, and small over large points.
     fn layer(self) -> usize {
         match self {
-            Self::Theory | Self::Rival | Self::OtherTheory => 0,
+            Self::Theory | Self::Rival | Self::OtherTheory | Self::ThirdTheory => 0,
             Self::OtherMeasured | Self::Change => 1,
             Self::Measured => 2,
         }
@@ -141,6 +144,11 @@ const OTHER_THEORY: Stroke = Stroke {
     width: 1.8,
     dash: "10 4",
 };
+const THIRD_THEORY: Stroke = Stroke {
+    color: "#7b4fa3",
+    width: 2.0,
+    dash: "2 3",
+};
 /// A bar that is wider than a point, so that a short bar is seen beside it.
 const CHANGE: Stroke = Stroke::solid("#c8502e", 9.0);
 const POINT: &str = INK;
@@ -161,7 +169,7 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     // Long numbers beside an axis shift the label of the axis outwards.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
-        upright_ticks(&y, HEIGHT)
+        upright_ticks(&y, style.scale * HEIGHT)
     });
     let widest = ticks
         .map(|tick| width(&tick.text, TICK_TEXT))
@@ -174,18 +182,22 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     let room = page - (columns - 1) as f64 * between;
     let size = (room / columns as f64).floor().min(WIDEST);
     let inner = columns as f64 * (size + between) - between;
+    let height = style.scale * HEIGHT;
     let mut svg = Svg::default();
     let inner = inner.max(TITLE.min(page));
     let top = style.title(&mut svg, left, inner, &curves.title, &curves.note);
     let all = curves.panels.iter().flat_map(|panel| &panel.curves);
     let top = key(&mut svg, all, [left, top + 16.0], inner) + 42.0;
     let mut bottom = top;
+    let head = TextStyle::new([0.0; 2], HEAD_TEXT, Anchor::Start).bold();
+    let head = head.fitting(curves.panels.iter().map(|panel| (&*panel.title, size)));
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % columns, i / columns].map(|n| n as f64);
         let x = left + column * (size + between);
-        let y = top + row * (HEIGHT + BETWEEN[1]);
-        let area = Area::new([x, y], [size, HEIGHT]);
+        let y = top + row * (height + BETWEEN[1]);
+        let area = Area::new([x, y], [size, height]);
         draw(&mut svg, panel, &curves.y, area);
+        svg.fitted(head.at([x, y - 8.0]), &panel.title, size);
         bottom = area.bottom();
     }
     let svg = svg.finish(left + inner + RIGHT, bottom + LABEL_BASELINE + 14.0);
@@ -293,9 +305,6 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
         }
     });
     frame.axes(svg);
-    let at = [area.x, area.y - 8.0];
-    let style = TextStyle::new(at, HEAD_TEXT, Anchor::Start).bold();
-    svg.fitted(style, &panel.title, area.width);
 }
 
 /// Returns curves in the order in which they are drawn.

@@ -18,6 +18,8 @@ const BODY: &str = "#b9b9b9";
 const MARGIN: f64 = 36.0;
 /// Height of the lines that lead from planes to their numbers.
 const FEET: f64 = 10.0;
+/// Minimum height of the plot.
+const MIN_PLOT: f64 = 60.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
 
@@ -77,9 +79,14 @@ impl<'a> SectionLayout<'a> {
         let names = names(&section.segments, area, across);
         let rows = names.iter().map(|name| name.row + 1).max().unwrap_or(0);
         let head = NAME_ROW * rows as f64 + 6.0;
+        let foot = 2.0 * BADGE + 4.0 + FEET;
         let plot = Area {
             y: area.y + head,
-            height: area.height - head - 2.0 * BADGE - 4.0 - FEET,
+            height: (area.height - head - foot).max(MIN_PLOT),
+            ..area
+        };
+        let area = Area {
+            height: head + plot.height + foot,
             ..area
         };
         Self {
@@ -95,6 +102,12 @@ impl<'a> SectionLayout<'a> {
             z,
             names,
         }
+    }
+
+    /// The lower edge of the cut, which is higher than the given area if there are many rows of
+    /// names.
+    pub(crate) fn bottom(&self) -> f64 {
+        self.area.bottom()
     }
 
     /// Draws the complete cut, with axes and plane numbers.
@@ -169,22 +182,42 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// Draws the number, the name and the distance of a plane, centred below a point.
-    pub(crate) fn heading(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2], room: f64) {
-        let Some(mark) = self.section.planes.get(plane) else {
-            return;
+    /// Draws the number, the name and the distance of planes, each centred below a point at the
+    /// height `y`. The planes have a number, a horizontal position and a room.
+    pub(crate) fn headings(
+        &self,
+        svg: &mut Svg,
+        y: f64,
+        planes: impl Iterator<Item = (usize, f64, f64)>,
+    ) {
+        let each = planes.filter_map(|(plane, x, room)| {
+            let mark = self.section.planes.get(plane)?;
+            let texts = [name_lines(&mark.name, room), self.place(mark, room)];
+            Some((plane, x, room, texts))
+        });
+        let each: Vec<_> = each.collect();
+        let texts = |kind: usize| {
+            let all = each.iter().flat_map(move |(_, _, room, texts)| {
+                texts[kind].iter().map(|text| (text.as_str(), *room))
+            });
+            all.collect::<Vec<_>>()
         };
-        badge(svg, [x, y + BADGE], plane);
-        let mut baseline = y + 32.0;
-        for (i, line) in name_lines(&mark.name, room).iter().enumerate() {
-            baseline = y + 32.0 + HEADING_LINE * i as f64;
-            let style = TextStyle::new([x, baseline], HEAD_TEXT, Anchor::Middle).bold();
-            svg.fitted(style, line, room);
-        }
-        for line in self.place(mark, room) {
-            baseline += HEADING_LINE;
-            let style = TextStyle::new([x, baseline], TICK_TEXT, Anchor::Middle).fill(SOFT);
-            svg.fitted(style, &line, room);
+        let bold = TextStyle::new([0.0; 2], HEAD_TEXT, Anchor::Middle).bold();
+        let soft = TextStyle::new([0.0; 2], TICK_TEXT, Anchor::Middle).fill(SOFT);
+        let styles = [bold, soft];
+        let styles = [0, 1].map(|kind| styles[kind].fitting(texts(kind).into_iter()));
+        for (plane, x, room, texts) in &each {
+            badge(svg, [*x, y + BADGE], *plane);
+            let lines = texts.iter().zip(styles);
+            let lines =
+                lines.flat_map(|(texts, style)| texts.iter().map(move |text| (text, style)));
+            for (i, (text, style)) in lines.enumerate() {
+                svg.fitted(
+                    style.at([*x, y + 32.0 + HEADING_LINE * i as f64]),
+                    text,
+                    *room,
+                );
+            }
         }
     }
 

@@ -73,6 +73,12 @@ impl Figure {
         Self { svg, csv, pictures }
     }
 
+    /// The width and the height of the drawing, in SVG units of 1/96 inch.
+    #[must_use]
+    pub fn size(&self) -> [f64; 2] {
+        svg_size(&self.svg)
+    }
+
     /// The drawing as a PNG, with two pixels to an SVG unit and with text in DejaVu Sans.
     /// The PNG states its resolution, 192 pixels per inch.
     ///
@@ -126,22 +132,26 @@ impl Figure {
     }
 }
 
+/// The width and the height of a drawing of this crate, in SVG units of 1/96 inch.
+#[must_use]
+pub fn svg_size(svg: &str) -> [f64; 2] {
+    ["width", "height"].map(|name| {
+        let after = svg.split_once(&format!(" {name}=\""));
+        let text = after.and_then(|(_, rest)| rest.split('"').next());
+        text.and_then(|text| text.parse().ok()).unwrap_or(0.0)
+    })
+}
+
 /// Stacks figures on one page, and joins their tables and pictures.
 #[must_use]
 pub fn stacked(figures: &[Figure]) -> Figure {
-    let number = |figure: &Figure, name: &str| {
-        let after = figure.svg.split_once(&format!(" {name}=\""));
-        let text = after.and_then(|(_, rest)| rest.split('"').next());
-        text.and_then(|text| text.parse::<f64>().ok())
-            .unwrap_or(0.0)
-    };
     let mut svg = Svg::default();
     let mut y = 0.0;
     for figure in figures {
         svg.raw(&figure.svg.replacen("<svg", &format!("<svg y=\"{y}\""), 1));
-        y += number(figure, "height");
+        y += figure.size()[1];
     }
-    let width = figures.iter().map(|figure| number(figure, "width"));
+    let width = figures.iter().map(|figure| figure.size()[0]);
     let tables = figures.iter().map(|figure| figure.csv.as_str());
     let tables: Vec<&str> = tables.filter(|table| !table.is_empty()).collect();
     Figure {

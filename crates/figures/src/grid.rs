@@ -36,8 +36,10 @@ pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
 /// A line over a spectrum is drawn as two strokes at its ends. This is the length of a stroke, as a
 /// fraction of the picture's side. The predicted ridge stays visible between the two strokes.
 const GUIDE_END: f64 = 0.1;
-/// Minimum distance between the texts below two adjacent pictures.
+/// Minimum distance between the texts of two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
+/// Maximum number of pictures side by side.
+const MAX_COLUMNS: usize = 8;
 
 /// A column of pictures with its position.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +95,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             shape,
             blocks: Vec::new(),
         };
-        for count in 1..=columns.max(1) {
+        for count in columns.div_ceil(MAX_COLUMNS).max(1)..=columns.max(1) {
             let length = columns.div_ceil(count).max(1);
             let starts: Vec<usize> = (0..columns).step_by(length).collect();
             let most = largest.min(MAX_SIDES[usize::from(count > 1)] / shape);
@@ -110,6 +112,13 @@ impl<'b, 'a> PageGrid<'b, 'a> {
                 }
             }
             if grid.side >= least || length == 1 {
+                // Pictures of pixels keep their shape; others become lower, so that the texts of
+                // a column keep their room.
+                if rows.iter().any(PlateRow::counts_pixels) {
+                    grid.side = (style.scale * grid.side).floor();
+                } else {
+                    grid.shape *= style.scale;
+                }
                 grid.blocks = starts
                     .iter()
                     .map(|start| grid.places(*start..(start + length).min(columns)))

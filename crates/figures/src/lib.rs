@@ -68,6 +68,7 @@ mod strip;
 mod style;
 mod svg;
 mod text;
+mod text_faults;
 mod world;
 
 pub use axis::{Axis, AxisQuantity};
@@ -76,7 +77,7 @@ pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use ellipses::{Ellipse, Ellipses, ellipses};
-pub use figure::{DrawnPicture, Error, Figure, csv_text, stacked};
+pub use figure::{DrawnPicture, Error, Figure, csv_text, stacked, svg_size};
 pub use image::photograph;
 pub use picture::{Guide, Picture, PlateRow};
 pub use plate::{Bars, Plate, plate};
@@ -84,3 +85,4 @@ pub use section::{DrawnObject, DrawnWorld, PlaneMark, Section, Segment, SegmentK
 pub use section_figure::section;
 pub use strip::{Strip, strip};
 pub use style::Style;
+pub use text_faults::text_faults;

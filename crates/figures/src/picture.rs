@@ -58,12 +58,17 @@ impl<'a> Picture<'a> {
     /// The ratio of the picture's height to its width. The ratio is 1 unless both axes
     /// count pixels, which are drawn square.
     pub(crate) fn shape(&self) -> f64 {
-        let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
-        if counts_pixels(&self.x) && counts_pixels(&self.y) {
-            let (columns, rows) = self.values.dim();
-            return rows as f64 / columns as f64;
+        let (columns, rows) = self.values.dim();
+        match self.counts_pixels() {
+            true => rows as f64 / columns as f64,
+            false => 1.0,
         }
-        1.0
+    }
+
+    /// Checks whether both axes count pixels.
+    fn counts_pixels(&self) -> bool {
+        let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
+        counts_pixels(&self.x) && counts_pixels(&self.y)
     }
 
     /// The numbers of this picture, which shows `of` in a row and a column.
@@ -144,6 +149,11 @@ impl<'a> PlateRow<'a> {
             shared,
             pictures,
         }
+    }
+
+    /// Checks whether a picture of the row counts pixels along both axes.
+    pub(crate) fn counts_pixels(&self) -> bool {
+        self.pictures.iter().any(Picture::counts_pixels)
     }
 
     /// The quantity beside the colors.

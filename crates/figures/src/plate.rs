@@ -54,7 +54,7 @@ const BAR: f64 = 60.0;
 /// below the first columns.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
-const TITLE: f64 = 440.0;
+const TITLE: f64 = 300.0;
 
 /// Draws a plate, at most as wide as the page.
 ///
@@ -81,16 +81,11 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
         bottom = feet(&mut svg, verdicts, &grid, block, bottom);
     }
     if let Some(bars) = &plate.bars {
-        let area = Area::new([LEFT, bottom + 26.0], [inner, BARS]);
+        let area = Area::new([LEFT, bottom + 26.0], [inner, style.scale * BARS]);
         let count = plate.heads.len();
-        let middles: Vec<f64> = if grid.blocks() == 1 {
-            grid.columns(0).map(|(_, middle, _)| middle).collect()
-        } else {
-            let evenly = |column| (column as f64 + 0.5) / count as f64;
-            (0..count)
-                .map(|column| LEFT + inner * evenly(column))
-                .collect()
-        };
+        let evenly = |column| (column as f64 + 0.5) / count as f64;
+        let middles = (0..count).map(|column| LEFT + inner * evenly(column));
+        let middles: Vec<f64> = middles.collect();
         bottom = draw_bars(&mut svg, bars, area, &middles);
     }
     if grid.has_gaps() {
@@ -107,22 +102,31 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
 /// Draws the first line of a block's headings above `top` and the second line, if any, below it.
 /// Returns the top of the pictures.
 fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize, top: f64) -> f64 {
-    let has_formula = |(column, ..): (usize, f64, f64)| heads[column].contains('\n');
-    let formulas = grid.columns(block).any(has_formula);
-    for (column, middle, room) in grid.columns(block) {
-        let (name, formula) = heads[column]
+    let parts = |column: usize| {
+        heads[column]
             .split_once('\n')
-            .unwrap_or((&heads[column], ""));
-        let style = TextStyle::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
-        svg.fitted(style, name, room);
-        let at = [middle, top - 9.0 + FORMULA];
-        svg.fitted(TextStyle::new(at, TICK_TEXT, Anchor::Middle), formula, room);
+            .unwrap_or((&heads[column], ""))
+    };
+    let formulas = grid
+        .columns(block)
+        .any(|(column, ..)| !parts(column).1.is_empty());
+    let columns = || grid.columns(block);
+    let bold = TextStyle::new([0.0; 2], HEAD_TEXT, Anchor::Middle).bold();
+    let bold = bold.fitting(columns().map(|(column, _, room)| (parts(column).0, room)));
+    let second = TextStyle::new([0.0; 2], TICK_TEXT, Anchor::Middle);
+    let second = second.fitting(columns().map(|(column, _, room)| (parts(column).1, room)));
+    for (column, middle, room) in columns() {
+        let (name, formula) = parts(column);
+        svg.fitted(bold.at([middle, top - 9.0]), name, room);
+        svg.fitted(second.at([middle, top - 9.0 + FORMULA]), formula, room);
     }
-    top + if formulas { FORMULA } else { 0.0 }
+    top + if formulas { FORMULA + DESCENT } else { 0.0 }
 }
 
 /// Distance between a heading and its second line.
 const FORMULA: f64 = 17.0;
+/// Distance that letters of a second line need below it.
+const DESCENT: f64 = 4.0;
 
 /// Draws the lines below each column of a block; returns the lower edge of the last line.
 pub(crate) fn feet(
@@ -132,20 +136,24 @@ pub(crate) fn feet(
     block: usize,
     baseline: f64,
 ) -> f64 {
-    let mut most = 0;
-    for (column, middle, room) in grid.columns(block) {
-        let Some(lines) = feet.get(column) else {
-            continue;
-        };
-        let lines = lines.iter().flat_map(|text| broken(text, room));
-        let lines: Vec<String> = lines.collect();
-        most = most.max(lines.len());
+    let columns = grid.columns(block).map(|(column, middle, room)| {
+        let lines = feet.get(column).into_iter().flatten();
+        let lines: Vec<String> = lines.flat_map(|text| broken(text, room)).collect();
+        (lines, middle, room)
+    });
+    let columns: Vec<_> = columns.collect();
+    let all = columns
+        .iter()
+        .flat_map(|(lines, _, room)| lines.iter().map(|text| (&**text, *room)));
+    let style = TextStyle::new([0.0; 2], TICK_TEXT, Anchor::Middle).fitting(all);
+    for (lines, middle, room) in &columns {
         for (line, text) in lines.iter().enumerate() {
-            let at = [middle, baseline + 21.0 + 16.0 * line as f64];
-            svg.fitted(TextStyle::new(at, TICK_TEXT, Anchor::Middle), text, room);
+            let at = [*middle, baseline + 21.0 + 16.0 * line as f64];
+            svg.fitted(style.at(at), text, *room);
         }
     }
-    baseline + 6.0 + 16.0 * most as f64
+    let most = columns.iter().map(|(lines, ..)| lines.len()).max();
+    baseline + 6.0 + 16.0 * most.unwrap_or(0) as f64
 }
 
 /// Breaks a line at spaces if it is wider than `room` even in small letters.

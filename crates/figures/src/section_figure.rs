@@ -17,19 +17,25 @@ impl Section {
     }
 
     /// Draws the scene to scale and the cut through y; returns the area for the main cut.
-    pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
-        let [width, height] = size;
+    /// The heights of drawings are multiplied by `scale`.
+    pub(crate) fn draw_above(
+        &self,
+        svg: &mut Svg,
+        [x, y]: [f64; 2],
+        [width, height]: [f64; 2],
+        scale: f64,
+    ) -> Area {
         let mut top = y;
         if let Some(world) = &self.world {
-            world.draw(svg, [x, top], width);
-            top += DrawnWorld::HEIGHT;
+            top = world.draw(svg, [x, top], [width, scale * DrawnWorld::HEIGHT]);
         }
         if let Some(other) = &self.other {
-            let area = Area::new([x, top + SectionLayout::AXIS], [width, OTHER]);
-            SectionLayout::new(other, area).draw(svg);
-            top = area.bottom();
+            let area = Area::new([x, top + SectionLayout::AXIS], [width, scale * OTHER]);
+            let cut = SectionLayout::new(other, area);
+            cut.draw(svg);
+            top = cut.bottom();
         }
-        Area::new([x, top + SectionLayout::AXIS], [width, height])
+        Area::new([x, top + SectionLayout::AXIS], [width, scale * height])
     }
 }
 
@@ -47,18 +53,19 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let inner = (120.0 * section.planes.len() as f64).max(640.0);
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);
-    let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT]);
+    let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT], 1.0);
     let cut = SectionLayout::new(section, area);
     cut.draw(&mut svg);
     let pitch = inner / section.planes.len().max(1) as f64;
-    let heads = area.bottom() + LEADERS;
+    let heads = cut.bottom() + LEADERS;
+    let middle = |plane: usize| area.x + pitch * (plane as f64 + 0.5);
     for plane in 0..section.planes.len() {
-        let middle = area.x + pitch * (plane as f64 + 0.5);
-        cut.leader(&mut svg, plane, [middle, heads]);
-        cut.heading(&mut svg, plane, [middle, heads], pitch - 10.0);
+        cut.leader(&mut svg, plane, [middle(plane), heads]);
     }
+    let columns = (0..section.planes.len()).map(|plane| (plane, middle(plane), pitch - 10.0));
+    cut.headings(&mut svg, heads, columns);
     let bottom = if section.planes.is_empty() {
-        area.bottom() + 10.0
+        cut.bottom() + 10.0
     } else {
         let rooms = (0..section.planes.len()).map(|plane| (plane, pitch - 10.0));
         heads + cut.heading_height(rooms)

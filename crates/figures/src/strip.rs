@@ -55,10 +55,12 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let top = style.title(&mut svg, LEFT, room, strip.title, strip.note);
     let mut unseen = Svg::default();
     let drawn = if style.scene { &mut svg } else { &mut unseen };
-    let area = strip.section.draw_above(drawn, [LEFT, top], [inner, CUT]);
+    let size = [inner, CUT];
+    let section = strip.section;
+    let area = section.draw_above(drawn, [LEFT, top], size, style.scale);
     let cut = SectionLayout::new(strip.section, area);
     cut.draw(drawn);
-    let mut bottom = if style.scene { area.bottom() } else { top };
+    let mut bottom = if style.scene { cut.bottom() } else { top };
     let verdicts: &[Vec<String>] = if style.verdicts { &strip.verdicts } else { &[] };
     for block in 0..grid.blocks() {
         // Lines from the cut to a lower block of columns would cross the columns above it, so
@@ -69,12 +71,12 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
             } else {
                 14.0
             };
-        for (column, middle, room) in grid.columns(block) {
+        for (column, middle, _) in grid.columns(block) {
             if grid.blocks() == 1 && style.scene {
                 cut.leader(&mut svg, column, [middle, heads]);
             }
-            cut.heading(&mut svg, column, [middle, heads], room);
         }
+        cut.headings(&mut svg, heads, grid.columns(block));
         let rooms = grid.columns(block).map(|(column, _, room)| (column, room));
         bottom = grid.draw(&mut svg, block, heads + cut.heading_height(rooms))?;
         bottom = feet(&mut svg, verdicts, &grid, block, bottom);

@@ -68,6 +68,25 @@ impl TextStyle {
         }
     }
 
+    /// The style at another position.
+    pub(crate) fn at(self, at: [f64; 2]) -> Self {
+        Self { at, ..self }
+    }
+
+    /// The style in the largest size, up to its own, in which each text is no wider than its room;
+    /// texts beside each other then have one size.
+    pub(crate) fn fitting<'a>(self, texts: impl Iterator<Item = (&'a str, f64)>) -> Self {
+        let sizes = texts.map(|(text, room)| fit(&plain(text), self.size, self.room(room)).1);
+        let size = sizes.fold(self.size, f64::min);
+        Self { size, ..self }
+    }
+
+    /// The room for regular letters in a room for letters of this style: bold letters are up to
+    /// 15 % wider than the estimate for regular ones.
+    fn room(&self, room: f64) -> f64 {
+        if self.bold { room / 1.15 } else { room }
+    }
+
     pub(crate) fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
@@ -200,9 +219,7 @@ impl Svg {
     /// shortened and written without italics and scripts.
     pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
-        // Bold letters are about 12 % wider than the estimate for regular letters.
-        let room = if style.bold { room / 1.12 } else { room };
-        let (text, size) = fit(&plain, style.size, room);
+        let (text, size) = fit(&plain, style.size, style.room(room));
         let style = TextStyle { size, ..style };
         if text == plain {
             self.markup(style, markup);

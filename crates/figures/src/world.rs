@@ -3,28 +3,29 @@
 
 use crate::marks::{BADGE, Hatching, PLANE, arrow, badge, line_of};
 use crate::section::{DrawnObject, DrawnWorld, SegmentKind};
-use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
+use crate::sizes::{FAINT, INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use etendue_field::tidy;
 
-/// Height of the drawing to scale, and of the text above it.
-const DRAWING: f64 = 170.0;
+/// Height of the text above the drawing.
 const HEAD: f64 = 30.0;
 
 /// Minimum distance between a plane's number and any object.
 const CLEAR: f64 = 2.0;
-/// Maximum distance of a plane's number from one end of the plane. If there is no space near this
-/// end, the number of the plane is placed near the other end.
-const NEAR: u32 = 60;
+/// Maximum distance of a plane's number from an end of the plane.
 const FARTHEST: u32 = 200;
+/// The step of the angle between a plane and the line to its number.
+const TURN: f64 = std::f64::consts::FRAC_PI_8;
+/// A number that is further from the end of its plane is joined to it by a line.
+const JOINED: f64 = BADGE + 6.0;
 
 impl DrawnWorld {
-    /// Total height.
-    pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
+    /// The usual height of the drawing.
+    pub(crate) const HEIGHT: f64 = 170.0;
 
-    /// Draws the scene to scale at the given upper left corner.
-    pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], width: f64) {
-        let area = Area::new([x, y + HEAD], [width, DRAWING]);
+    /// Draws the scene to scale at the given upper left corner; returns its lower edge.
+    pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> f64 {
+        let area = Area::new([x, y + HEAD], size);
         let title = TextStyle::new([area.middle()[0], y + 22.0], LABEL_TEXT, Anchor::Middle);
         svg.text(title, "to scale");
         let (scale, middle) = self.scale(area);
@@ -40,11 +41,15 @@ impl DrawnWorld {
         for (i, plane) in self.planes.iter().enumerate() {
             let ends = plane.map(place);
             svg.line(ends[0], ends[1], Stroke::solid(PLANE, 1.2));
-            let number = self.free(ends, &numbers, &place);
+            let [number, end] = self.free(i, &numbers, area, &place);
+            if distance(number, [end; 2]) > JOINED {
+                svg.line(end, number, Stroke::solid(FAINT, STROKE));
+            }
             badge(svg, number, i);
             numbers.push(number);
         }
         bar(svg, area, scale);
+        area.bottom() + 16.0
     }
 
     /// The scale in units per metre, and the centre of the drawing. With both, the path,
@@ -79,34 +84,52 @@ impl DrawnWorld {
         )
     }
 
-    /// A position for the number of a plane. The number is beyond one end of the plane,
-    /// and clear of objects and other numbers.
+    /// A position for the number of a plane: the nearest to one of its ends, beyond the plane or
+    /// beside it, that is within `area` and clear of objects, of the path, of other planes and of
+    /// other numbers. Also returns this end.
     fn free(
         &self,
-        [from, to]: [[f64; 2]; 2],
+        plane: usize,
         taken: &[[f64; 2]],
+        area: Area,
         place: &dyn Fn([f64; 2]) -> [f64; 2],
-    ) -> [f64; 2] {
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let length = libm::hypot(along[0], along[1]).max(1e-9);
-        let step = along.map(|a| a / length);
+    ) -> [[f64; 2]; 2] {
+        let [from, to] = self.planes[plane].map(place);
         let objects = self.objects.iter().map(|object| &object.segment);
         let objects = objects.filter(|segment| segment.kind != SegmentKind::Sky);
-        let lines = objects.map(|segment| [segment.start, segment.end].map(place));
-        let lines: Vec<[[f64; 2]; 2]> = lines.collect();
-        let is_clear = |number: &[f64; 2]| {
-            let apart = |other: &[f64; 2]| distance(*number, [*other; 2]) >= 2.0 * BADGE;
-            let beside = |line: &[[f64; 2]; 2]| distance(*number, *line) >= BADGE + CLEAR;
-            taken.iter().all(apart) && lines.iter().all(beside)
+        let objects = objects.map(|segment| [segment.start, segment.end]);
+        let path = self.path.windows(2).map(|leg| [leg[0], leg[1]]);
+        let others = self
+            .planes
+            .iter()
+            .filter(|other| **other != self.planes[plane]);
+        let lines = objects.chain(path).chain(others.copied());
+        let lines: Vec<[[f64; 2]; 2]> = lines.map(|line| line.map(place)).collect();
+        let is_clear = |number: [f64; 2]| {
+            let apart = |other: &[f64; 2]| distance(number, [*other; 2]) >= 2.0 * BADGE;
+            let beside = |line: &[[f64; 2]; 2]| distance(number, *line) >= BADGE + CLEAR;
+            let [x, y] = number;
+            let is_inside = (area.x + BADGE..=area.right() - BADGE).contains(&x)
+                && (area.y + BADGE..=area.bottom() - BADGE).contains(&y);
+            is_inside && taken.iter().all(apart) && lines.iter().all(beside)
         };
-        let beyond = |end: [f64; 2], sign: f64, steps: u32| {
-            let far = sign * (BADGE + f64::from(steps));
-            [0, 1].map(|i| end[i] + far * step[i])
+        let beyond = |end: [f64; 2], other: [f64; 2], far: u32, turn: i32| {
+            let angle = libm::atan2(end[1] - other[1], end[0] - other[0]) + TURN * f64::from(turn);
+            let far = BADGE + f64::from(far);
+            [
+                end[0] + far * libm::cos(angle),
+                end[1] + far * libm::sin(angle),
+            ]
         };
-        let near = (0..NEAR).map(|n| beyond(to, 1.0, n));
-        let other = (0..FARTHEST).map(|n| beyond(from, -1.0, n));
-        let mut clear = near.chain(other).filter(is_clear);
-        clear.next().unwrap_or_else(|| beyond(to, 1.0, 0))
+        let turns = [0, 1, -1, 2, -2, 3, -3, 4, -4];
+        let all = (0..FARTHEST).flat_map(|far| {
+            let ends = [[to, from], [from, to]].into_iter();
+            ends.flat_map(move |[end, other]| {
+                turns.map(|turn| [beyond(end, other, far, turn), end])
+            })
+        });
+        let mut clear = all.into_iter().filter(|[number, _]| is_clear(*number));
+        clear.next().unwrap_or_else(|| [beyond(to, from, 0, 0), to])
     }
 
     fn objects(&self, svg: &mut Svg, place: &dyn Fn([f64; 2]) -> [f64; 2]) {
@@ -173,11 +196,16 @@ mod tests {
         let world = DrawnWorld {
             path: Vec::new(),
             objects: vec![blocker],
-            planes: Vec::new(),
+            planes: vec![[[0.0, 0.0], [0.0, 10.0]]],
         };
-        let number = world.free([[0.0, 0.0], [0.0, 10.0]], &[], &|point| point);
+        let at = |area: Area| world.free(0, &[], area, &|point| point)[0];
+        let area = Area::new([-50.0, -50.0], [100.0, 100.0]);
+        let number = at(area);
         assert!(distance(number, [[0.0, 14.0], [0.0, 22.0]]) >= BADGE + CLEAR);
-        // There is space only far beyond the end of the plane.
-        assert!(number[1] > 22.0, "{number:?}");
+        assert!(number[1] < -BADGE + 0.1, "beyond the other end: {number:?}");
+        // The other end is at the border.
+        let number = at(Area::new([-50.0, -3.0], [100.0, 100.0]));
+        assert!(distance(number, [[0.0, 14.0], [0.0, 22.0]]) >= BADGE + CLEAR);
+        assert!(number[1] > BADGE - 3.0, "{number:?}");
     }
 }

@@ -2,13 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a fault here fails the test")]
 
-use crate::common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
+use crate::common::{DECIBEL, compare, corner, grid, path, path_in, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    AxisQuantity, Chart, Curve, CurveKind, CurvePanel, Curves, Figure, Scale, Style, chart, curves,
-    section, stacked,
+    AxisQuantity, Chart, Curve, CurveKind, CurvePanel, Curves, Error, Figure, Scale, Style, chart,
+    curves, section, stacked,
 };
-use resvg::usvg;
 
 /// Returns figures of every kind: few and many planes, short and long names, ordinary and tiny
 /// numbers, and missing values.
@@ -138,48 +137,10 @@ fn single_values_are_visible() {
     assert_eq!(drawn.svg.matches("stroke=\"#1f6fb4\"").count(), 2);
 }
 
-/// The texts of a figure with the boxes of their lines, and the size of the canvas.
-fn written(figure: &Figure) -> (Vec<(String, usvg::Rect)>, usvg::Size) {
-    let tree = usvg::Tree::from_str(&with_font(&figure.svg), &options()).unwrap();
-    (texts(tree.root()), tree.size())
-}
-
 #[test]
-fn no_text_leaves_the_canvas() {
+fn all_texts_can_be_read() {
     for figure in gallery() {
-        let (boxes, size) = written(&figure);
-        assert!(boxes.len() > 10);
-        for (text, b) in boxes {
-            let within = b.right() <= size.width() && b.bottom() <= size.height();
-            let inside = b.left() >= 0.0 && b.top() >= 0.0 && within;
-            assert!(inside, "{text:?} at {b:?} on {size:?}");
-        }
-    }
-}
-
-#[test]
-fn no_texts_overlap() {
-    for figure in gallery() {
-        let (boxes, _) = written(&figure);
-        for (i, (one, a)) in boxes.iter().enumerate() {
-            for (other, b) in &boxes[i + 1..] {
-                let beside = a.right() <= b.left() || b.right() <= a.left();
-                let apart = beside || a.bottom() <= b.top() || b.bottom() <= a.top();
-                assert!(apart, "{one:?} at {a:?} and {other:?} at {b:?}");
-            }
-        }
-    }
-}
-
-/// A page is at most 7 inches wide, and an inch has 96 units. All texts, including sub- and
-/// superscripts, have a font size of at least 6 points.
-#[test]
-fn no_text_is_below_six_points() {
-    for figure in gallery() {
-        let sizes = figure.svg.split("font-size=\"").skip(1);
-        let sizes = sizes.map(|rest| rest.split('"').next().unwrap().parse::<f64>().unwrap());
-        let smallest = sizes.fold(f64::INFINITY, f64::min);
-        assert!(smallest >= 8.0, "{smallest} of 96 to the inch");
+        assert_eq!(figure.text_faults().unwrap(), Vec::<String>::new());
     }
 }
 
@@ -191,39 +152,23 @@ fn strips_plates_and_curves_are_no_wider_than_two_columns() {
     let panels = (1..=5).map(|count| curves(&lines(count), &Style::default()).unwrap());
     let charts = [1, 8].map(|count| chart(&named(count), &Style::default()).unwrap());
     for figure in strips.chain(plates).chain(panels).chain(charts) {
-        let (_, size) = written(&figure);
-        assert!(size.width() <= 672.0, "{} of 96 to the inch", size.width());
+        let [width, _] = figure.size();
+        assert!(width <= 672.0, "{width} of 96 to the inch");
     }
 }
 
-fn options() -> usvg::Options<'static> {
-    let mut options = usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_font_data(dejavu::sans::regular().to_vec());
-    fonts.load_font_data(dejavu::sans::bold().to_vec());
-    fonts.load_font_data(dejavu::sans::oblique().to_vec());
-    options
-}
-
-/// Reduces the font list to the loaded font, so no other font can replace this font.
-fn with_font(svg: &str) -> String {
-    svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
-}
-
-/// All texts of an SVG tree with the boxes of their ink.
-fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
-    let mut found = Vec::new();
-    for node in group.children() {
-        match node {
-            usvg::Node::Group(inner) => found.extend(texts(inner)),
-            usvg::Node::Text(text) => {
-                let content = text.chunks().iter().map(|c| c.text()).collect();
-                found.push((content, text.abs_bounding_box()));
-            }
-            _ => {}
-        }
-    }
-    found
+/// Pictures become lower on a low page; letters keep their size.
+#[test]
+fn a_page_has_the_height_of_its_style() {
+    let values = corner();
+    let strip =
+        |style: &Style| -> Result<Figure, Error> { path_in(&scene(8), values.view(), style) };
+    let free = strip(&Style::default()).unwrap().size()[1];
+    let mut style = Style::default();
+    style.height = 0.9 * free / 96.0;
+    let figure = style.within_height(strip).unwrap();
+    assert!(figure.size()[1] <= 0.9 * free, "{:?}", figure.size());
+    assert_eq!(figure.text_faults().unwrap(), Vec::<String>::new());
 }
 
 #[test]

@@ -355,10 +355,9 @@ fn bright(radiance: &[f64]) -> f64 {
 
 /// The style with a grey scale for photographs.
 fn photographs(style: &Style) -> Style {
-    Style {
-        palette: Palette::Grey,
-        ..*style
-    }
+    let mut style = *style;
+    style.palette = Palette::Grey;
+    style
 }
 
 #[cfg(test)]

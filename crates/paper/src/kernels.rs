@@ -148,20 +148,30 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let angles = || AxisQuantity::new("*θ*", "radians");
     let frequency = || AxisQuantity::new("*Ω*", "cycles/rad");
     let range = [-FRAC_PI_2, FRAC_PI_2];
-    let functions = materials.iter().map(|of| {
-        let theory = curve(CurveKind::Theory, "theory", range, &|t| of.value(t));
-        CurvePanel::new(&format!("{}, over angle", of.name), angles(), vec![theory])
-    });
-    let transforms = materials.iter().map(|of| {
-        let theory = curve(CurveKind::Theory, "theory", [-2.0, 2.0], &|o| {
-            of.transform(o)
+    let kinds = [
+        CurveKind::Theory,
+        CurveKind::Rival,
+        CurveKind::OtherTheory,
+        CurveKind::ThirdTheory,
+    ];
+    let panel = |title: &str, x, range, value: &dyn Fn(&KernelFactor, f64) -> f64| {
+        let curves = materials.iter().zip(kinds).map(|(of, kind)| {
+            let mut drawn = curve(kind, of.name, range, &|at| value(of, at));
+            let largest = drawn.points.iter().map(|p| p[1].abs()).fold(0.0, f64::max);
+            drawn
+                .points
+                .iter_mut()
+                .for_each(|point| point[1] /= largest);
+            drawn
         });
-        CurvePanel::new(
-            &format!("{}, transform", of.name),
-            frequency(),
-            vec![theory],
-        )
-    });
+        CurvePanel::new(title, x, curves.collect())
+    };
+    let mut panels = vec![
+        panel("over angle", angles(), range, &|of, at| of.value(at)),
+        panel("transform", frequency(), [-2.0, 2.0], &|of, at| {
+            of.transform(at)
+        }),
+    ];
     let shares = materials.each_ref().map(|of| {
         let below = of.energy_below();
         below.map(|frequency| frequency.map_or("–".to_owned(), |f| format!("{f:.3}")))
@@ -172,10 +182,9 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "Glass: *n* = 1.5. Diamond: 2.417. Aluminium: 1.488 + 7.821 i, at 650 nm. Frequencies below which 80, 95 and 99 % of the energy lie (cycles/rad): {}.",
         told.collect::<Vec<_>>().join("; ")
     );
-    let mut panels: Vec<CurvePanel> = functions.chain(transforms).collect();
     letter_panels('a', &mut panels);
     let words = ["The clamped cosine, alone and with Fresnel factors", &note];
-    let mut figure = taken.curves(words, AxisQuantity::new("value", ""), panels)?;
+    let mut figure = taken.curves(words, AxisQuantity::new("relative to its peak", ""), panels)?;
     for (of, below) in materials.iter().zip(&shares) {
         let name = of.name.replace(['_', '{', '}'], "");
         for (share, frequency) in SHARES.iter().zip(below) {

@@ -230,7 +230,12 @@ pub(crate) fn make(
 
 /// Writes the picture of a figure, the numbers behind it, and its scenes.
 fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Result<(), Failure> {
-    let figure = (subject.draw)(taken)?;
+    let figure = taken.style.within_height(|style| {
+        (subject.draw)(&FigureData {
+            style: *style,
+            ..*taken
+        })
+    })?;
     let pdf = figure.pdf().map_err(Failure::cannot_run)?;
     let png = figure.png().map_err(Failure::cannot_run)?;
     let _stage = taken.reporter.begin(Work::Stage("writing results"));

@@ -15,12 +15,15 @@ pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
         .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
         .from_bytes(&bytes)
         .map_err(|e| fault(&format!("{e}; an example of a style is {EXAMPLE}")))?;
-    let [least, most] = Style::WIDTHS;
-    if !(least..=most).contains(&style.width) {
-        return Err(fault(&format!(
-            "width: {} is not allowed; allowed: {least} to {most} inches",
-            style.width
-        )));
+    for (name, value, [least, most]) in [
+        ("width", style.width, Style::WIDTHS),
+        ("height", style.height, Style::HEIGHTS),
+    ] {
+        if !(least..=most).contains(&value) {
+            return Err(fault(&format!(
+                "{name}: {value} is not allowed; allowed: {least} to {most} inches"
+            )));
+        }
     }
     if let Some(floor) = style
         .floor
@@ -34,8 +37,7 @@ pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
 }
 
 /// A style with every field.
-const EXAMPLE: &str =
-    "(titles: false, scene: false, verdicts: false, width: 3.33, floor: -40, palette: Viridis)";
+const EXAMPLE: &str = "(titles: false, scene: false, verdicts: false, width: 3.33, height: 4.5, floor: -40, palette: Viridis)";
 
 /// Bounds, in dB, of the lowest level in the colors of spectra. For any number of photons, noise is
 /// above the lower bound. At the upper bound, the peak of a spectrum is still visible.

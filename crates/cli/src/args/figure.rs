@@ -81,8 +81,10 @@ pub(crate) struct FigureArgs {
 
     /// Style file, in RON, such as (titles: false, scene: false, verdicts: false, width: 3.33,
     /// floor: -40). Each field is optional. `titles` also controls the notes. `scene` controls the
-    /// drawing above the planes. `width` is the width of the page in inches, from 3.3 to 7. `floor`
-    /// is the lowest level of spectra, in dB. `palette` is Inferno, Magma, Viridis or Cividis
+    /// drawing above the planes. `width` is the width of the page in inches, from 3.3 to 7, and
+    /// `height` its largest height, 9.1 unless it is given: pictures become lower on a low page.
+    /// `floor` is the lowest level of spectra, in dB. `palette` is Inferno, Magma, Viridis or
+    /// Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

@@ -10,8 +10,8 @@
 use base64::Engine;
 use etendue_field::Side;
 use etendue_figures::{
-    Axis, AxisQuantity, Bars, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow,
-    Scale, Section, Segment, SegmentKind, Strip, Style, comparison, plate, strip,
+    Axis, AxisQuantity, Bars, Comparison, Error, Figure, Guide, Picture, PlaneMark, Plate,
+    PlateRow, Scale, Section, Segment, SegmentKind, Strip, Style, comparison, plate, strip,
 };
 use ndarray::{Array2, ArrayView2};
 
@@ -120,6 +120,15 @@ pub fn scene(count: usize) -> Section {
 }
 
 pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
+    path_in(section, values, &Style::default()).unwrap()
+}
+
+/// The same in a style.
+pub fn path_in(
+    section: &Section,
+    values: ArrayView2<'_, f64>,
+    style: &Style,
+) -> Result<Figure, Error> {
     let ends = |name, unit| Axis::edges(name, unit, [-1.0, 1.0]);
     let picture = || Picture::new([ends("*x*", "m"), ends("*u*", "")], values);
     let guide = Guide {
@@ -149,7 +158,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         ],
         verdicts: planes().map(|_| verdict.to_vec()).collect(),
     };
-    strip(&path, &Style::default()).unwrap()
+    strip(&path, style)
 }
 
 /// A 5 × 3 array with one bright cell at high x and high y.

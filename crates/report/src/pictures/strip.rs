@@ -74,7 +74,9 @@ pub fn strip_of(
             .map(|at| verdict_lines(at.seen.found))
             .collect(),
     };
-    strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
+    let style = style.copied().unwrap_or_default();
+    let figure = style.within_height(|style| strip(&drawn, style));
+    figure.map_err(Failure::cannot_run)
 }
 
 /// The rows of pictures below the scene. `both` has the slices at 0 and at 90° if both are
