@@ -266,6 +266,7 @@ def test_pairs_show_changes_below_the_noise(result):
         assert found.paired == paired
         # One in a thousand, since the seeds are fixed.
         assert (found.p_value > 1e-3) != paired
+        assert np.nanmean(found.z**2) == pytest.approx(found.chi2_per_dof, rel=0.02)
     same = etendue.difference(result["receiver"], result["receiver"])
     assert same.difference == same.noise == 0 and same.p_value is None
 
