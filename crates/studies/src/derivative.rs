@@ -8,8 +8,6 @@
 
 mod table;
 
-pub use table::NUMBERS;
-
 use crate::fit::{size, spread};
 use crate::sweep::values::{Setting, Sweep, real_value};
 use crate::sweep::{self, FinishedSweep, SweepPoints, SweepRequest};
@@ -66,7 +64,7 @@ pub struct PlaneDerivative {
     /// The p-value of the hypothesis that theory's difference over the same step is true. `None` if
     /// predictions have numerical errors that replicates do not show.
     pub p_value: Option<f64>,
-    /// The derivatives of the numbers in [`NUMBERS`], with their errors from pairs of batches.
+    /// The derivatives of both bandwidths and of the slope, with their errors from pairs of batches.
     pub numbers: [Option<Uncertain>; 3],
 }
 
@@ -220,7 +218,7 @@ pub fn derivative(
         files.push((format!("{}/{ARRAYS}", plane.name), bytes));
         all.extend(rungs);
     }
-    files.push((TABLE.to_owned(), table::csv(&field.path, &all)?));
+    files.push((TABLE.to_owned(), PlaneDerivative::csv(&field.path, &all)?));
     drop(stage);
     let chosen = all.into_iter().filter(|plane| plane.is_chosen);
     let chosen: Vec<PlaneDerivative> = chosen.collect();
@@ -242,7 +240,7 @@ struct Ladder<'a> {
     /// ‖S‖ in the middle of the smallest step.
     norm: f64,
     derivatives: Vec<Residuals>,
-    /// The changes of the numbers in [`NUMBERS`] over both steps.
+    /// The changes of these numbers over two steps.
     changes: Vec<[Option<Uncertain>; 3]>,
 }
 

@@ -8,7 +8,7 @@ use etendue_scene::unit;
 use etendue_store::Failure;
 
 /// The numbers of a plane that have derivatives.
-pub const NUMBERS: [&str; 3] = [BANDWIDTHS[0], BANDWIDTHS[1], SLOPE];
+const NUMBERS: [&str; 3] = [BANDWIDTHS[0], BANDWIDTHS[1], SLOPE];
 
 const HEADER: [&str; 10] = [
     "field",
@@ -23,29 +23,33 @@ const HEADER: [&str; 10] = [
     "p_value",
 ];
 
-/// The table with all digits: a row for each plane and each step.
-pub(super) fn csv(field: &str, all: &[PlaneDerivative]) -> Result<Vec<u8>, Failure> {
-    let digits = |number: Option<f64>| number.map_or(String::new(), |x| format!("{x:?}"));
-    let rows = all.iter().map(|of| {
-        let mut row = vec![
-            field.to_owned(),
-            of.plane.clone(),
-            digits(Some(of.step)),
-            of.is_chosen.to_string(),
-            digits(Some(of.size)),
-            digits(of.noise),
-            digits(of.bias),
-            digits(of.share.map(|share| share.value)),
-            digits(of.share.map(|share| share.error)),
-            digits(of.p_value),
-        ];
-        let numbers = of.numbers.iter();
-        row.extend(numbers.flat_map(|of| [of.map(|n| n.value), of.map(|n| n.error)].map(digits)));
-        row
-    });
-    let of_numbers = NUMBERS.map(|name| [name.to_owned(), format!("error_of_{name}")]);
-    let header = [&HEADER.map(str::to_owned), of_numbers.as_flattened()].concat();
-    table::csv(&header, rows)
+impl PlaneDerivative {
+    /// The table with all digits: a row for each plane and each step.
+    pub(super) fn csv(field: &str, all: &[Self]) -> Result<Vec<u8>, Failure> {
+        let digits = |number: Option<f64>| number.map_or(String::new(), |x| format!("{x:?}"));
+        let rows = all.iter().map(|of| {
+            let mut row = vec![
+                field.to_owned(),
+                of.plane.clone(),
+                digits(Some(of.step)),
+                of.is_chosen.to_string(),
+                digits(Some(of.size)),
+                digits(of.noise),
+                digits(of.bias),
+                digits(of.share.map(|share| share.value)),
+                digits(of.share.map(|share| share.error)),
+                digits(of.p_value),
+            ];
+            let numbers = of.numbers.iter();
+            row.extend(
+                numbers.flat_map(|of| [of.map(|n| n.value), of.map(|n| n.error)].map(digits)),
+            );
+            row
+        });
+        let of_numbers = NUMBERS.map(|name| [name.to_owned(), format!("error_of_{name}")]);
+        let header = [&HEADER.map(str::to_owned), of_numbers.as_flattened()].concat();
+        table::csv(&header, rows)
+    }
 }
 
 impl Derivative {
