@@ -17,8 +17,10 @@ from importlib.metadata import version
 
 from etendue import operators
 from etendue._etendue import CannotRun, SceneError
-from etendue.commands import figure, sweep
+from etendue.commands import DrawnFigure, figure, sweep
+from etendue.derivative import Derivative, NumberDerivative, PlaneDerivative, derivative
 from etendue.difference import Difference, difference
+from etendue.examples import examples
 from etendue.fit import Fit, FittedField, fit
 from etendue.grids import GridSpectrum, grid_spectrum
 from etendue.images import TwoSample, two_sample
@@ -27,7 +29,7 @@ from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.sampling import ChiSquare, Furnace, chi_square, furnace
 from etendue.scene import PlaneInfo, Scene
-from etendue.stages import Measurement, Photons, Prediction, check, measure, merge, photons, predict, run
+from etendue.stages import Measurement, Photons, Prediction, check, load, measure, merge, photons, predict, run
 from etendue.theories import compare, theory
 from etendue.variance import SamplerVariance, Variance, VarianceCurve, variance
 from etendue.wedge import Wedge
@@ -36,7 +38,9 @@ from etendue.worlds import ImportedScene, Picture, Probe, ProbedPlane, import_sc
 __all__ = [
     "CannotRun",
     "ChiSquare",
+    "Derivative",
     "Difference",
+    "DrawnFigure",
     "Fit",
     "FittedField",
     "Furnace",
@@ -46,9 +50,11 @@ __all__ = [
     "MTF",
     "Measurement",
     "PhaseSpace",
+    "NumberDerivative",
     "Photons",
     "Picture",
     "Plane",
+    "PlaneDerivative",
     "PlaneInfo",
     "Prediction",
     "Probe",
@@ -68,12 +74,15 @@ __all__ = [
     "check",
     "chi_square",
     "compare",
+    "derivative",
     "difference",
+    "examples",
     "figure",
     "fit",
     "furnace",
     "grid_spectrum",
     "import_scene",
+    "load",
     "measure",
     "merge",
     "mtf",

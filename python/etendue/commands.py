@@ -6,7 +6,7 @@ import csv
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,13 @@ from numpy.typing import NDArray
 from etendue import _etendue
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
-from etendue.scene import Method, Scene, Source, Value, field_texts, method_of, scene_argument, value_text
+from etendue.scene import Method, Scene, Source, Value, field_texts, fields, method_of, scene_argument, value_text
+
+if TYPE_CHECKING:
+    _Path = Path
+else:
+    # Before Python 3.12, only the class of the platform can be extended.
+    _Path = type(Path())
 
 
 def sweep(
@@ -51,13 +57,18 @@ def sweep(
         method=method_of(scene) if method is None else method,
         force=force,
     )
-    values = [(path, _values(value)) for path, value in set.items()]
+    values = [(path, _values(path, value)) for path, value in fields(set)]
     threads = thread_count(threads)
     with told(progress) as tell:
         _etendue.sweep(scene_argument(scene), values, out, arguments, threads, tell)
-    with open(Path(out) / "sweep.csv", newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    return {name: _column([row[name] for row in rows]) for name in rows[0]}
+    return read_table(Path(out) / "sweep.csv")
+
+
+class DrawnFigure(_Path):
+    """The path of a PNG, which notebooks show."""
+
+    def _repr_png_(self) -> bytes | None:
+        return self.read_bytes() if self.suffix == ".png" and self.is_file() else None
 
 
 def figure(
@@ -71,8 +82,8 @@ def figure(
     force: bool = False,
     threads: int | None = None,
     progress: Progress = None,
-) -> Path:
-    """Draws scenes: writes PNG, SVG, PDF and their data to a folder below `out`. Returns the PNG.
+) -> DrawnFigure:
+    """Draws scenes: writes PNG, SVG, PDF and their data to a folder below `out`. Returns the path of the PNG, which notebooks show.
 
     One scene is drawn along its path, or at `plane` only; several scenes are drawn side by side at `plane`, or each at its last plane.
     A name such as "7" or "table1" means a figure of the paper; if there are several, the PNG of the first is returned.
@@ -88,7 +99,14 @@ def figure(
     threads = thread_count(threads)
     with told(progress) as tell:
         folder = _etendue.figure(wanted, field_texts(set), out, arguments, threads, tell)
-    return Path(folder) / "figure.png"
+    return DrawnFigure(folder, "figure.png")
+
+
+def read_table(path: Path) -> dict[str, NDArray[Any]]:
+    """The columns of a table in CSV, by name: numbers, NaN where a cell is empty, or texts."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: _column([row[name] for row in rows]) for name in rows[0]}
 
 
 def given(**arguments: Any) -> dict[str, Any]:
@@ -96,10 +114,9 @@ def given(**arguments: Any) -> dict[str, Any]:
     return {name: value for name, value in arguments.items() if value is not None}
 
 
-def _values(value: Value | Sequence[float] | NDArray[np.float64]) -> str | list[float]:
-    if isinstance(value, str) or np.ndim(value) == 0:
-        return value_text(value)  # type: ignore[arg-type]
-    return [float(number) for number in value]  # type: ignore[union-attr]
+def _values(path: str, value: Value | Sequence[float] | NDArray[np.float64]) -> str | list[float]:
+    text = value_text(path, value)  # type: ignore[arg-type]
+    return text if isinstance(value, str) or np.ndim(value) == 0 else [float(number) for number in value]  # type: ignore[union-attr]
 
 
 def _column(cells: list[str]) -> NDArray[Any]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from etendue import _etendue
+from etendue.plot import Shown, Variables, axes_of, picture, table
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count, whole
 from etendue.rays import Spectrum
@@ -40,7 +41,7 @@ class FittedField:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Shown):
     """Fields of a scene, fitted to a measurement. `fit["surfaces.0.center.2"]` is the estimate of a field."""
 
     fields: Mapping[str, FittedField]
@@ -62,6 +63,43 @@ class Fit:
 
     def __getitem__(self, field: str) -> FittedField:
         return self.fields[field]
+
+    def _variables(self) -> Variables:
+        names = ("start", "value", "error", "error_alone", "bound")
+        columns = {name: (("field",), np.array([getattr(of, name) for of in self.fields.values()], np.float64)) for name in names}
+        pairs = {"correlations": self.correlations, "fisher_information": self.fisher_information}
+        known = {name: (("field", "other_field"), array) for name, array in pairs.items() if array is not None and array.size}
+        return {**columns, **known}
+
+    def _axes(self) -> Mapping[str, NDArray[Any]]:
+        names = np.array(list(self.fields))
+        return {"field": names, "other_field": names}
+
+    def _attributes(self) -> Mapping[str, Any]:
+        return {"verdict": self.verdict, "p_value": np.nan if self.p_value is None else self.p_value}
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the correlations of the estimates, on axes of matplotlib; returns the axes.
+
+        Raises `ValueError` if the spectra do not determine the fields, so that there are no correlations.
+        """
+        if not self.correlations.size:
+            raise ValueError("the fields are not determined: there are no correlations to draw")
+        ax, names = axes_of(ax), list(self.fields)
+        image = ax.imshow(self.correlations, vmin=-1, vmax=1, cmap="RdBu_r")
+        ax.set_xticks(range(len(names)), names, rotation=30, ha="right")
+        ax.set_yticks(range(len(names)), names)
+        ax.figure.colorbar(image, ax=ax, label="correlation")
+        return ax
+
+    def _repr_html_(self) -> str:
+        def number(value: float | None) -> str:
+            return "–" if value is None else f"{value:.6g}"
+
+        rows = [[of.field, *map(number, (of.start, of.value, of.error, of.error_alone, of.bound))] for of in self.fields.values()]
+        heads = ["field", "start", "value", "error", "error if all others were known", "bound"]
+        drawn = picture(self) if len(self.fields) > 1 and self.correlations.size else ""
+        return f"<p><b>fit: {self.verdict}</b>, p = {number(self.p_value)}</p>{table(heads, rows)}{drawn}"
 
     def __repr__(self) -> str:
         found = ", ".join(f"{of.field} {of.value:.6g} ± {of.error or float('nan'):.2g}" for of in self.fields.values())
@@ -102,8 +140,10 @@ def fit(
         target = to._raw  # pyright: ignore[reportPrivateUsage]
     elif isinstance(to, (str, os.PathLike)):
         target = [os.fspath(to)]
-    else:
+    elif isinstance(to, Sequence):  # pyright: ignore[reportUnnecessaryIsInstance]
         target = [os.fspath(path) for path in to]
+    else:
+        raise TypeError(f"to is {to!r}; allowed: a Measurement, a Spectrum, a path, or a sequence of paths")
     given = [(path, (float(low), float(high))) for path, (low, high) in (ranges or {}).items()]
     count, threads = whole("starts", starts, 1, 1000), thread_count(threads)
     with told(progress) as tell:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 from math import inf
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from etendue import types
 from etendue.difference import Sample
-from etendue.plot import plotted
+from etendue.plot import Shown, Variables, plotted
 from etendue.rays import around
 from etendue.scene import Scene
 from etendue.separable import BLOCK, Axis, compressed_field, full, slices_of
@@ -30,7 +30,7 @@ KNOWN = 10**9
 
 
 @dataclass(frozen=True, eq=False)
-class GridSpectrum:
+class GridSpectrum(Shown):
     """The windowed spectrum of a light field on a grid. Errors are 0 if neither `noise` nor `replicates` was given."""
 
     azimuth: Floats
@@ -55,19 +55,20 @@ class GridSpectrum:
 
     @cached_property
     def power(self) -> Floats:
-        """The mean of |slices|² over azimuths, [rho, nu] with rho ≥ 0, minus the power of the noise; it may be negative."""
-        return self.with_error(self._mean)[0]
+        """The mean of |slices|² over azimuths, [rho, nu], minus the power of the noise; it may be negative."""
+        return self.with_error(_mean)[0]
 
     @cached_property
     def power_sigma(self) -> Floats:
         """Standard error of `power`. Where noise is above the signal, it is up to √2 too large with replicates, and √3 with `noise`."""
-        return self.with_error(self._mean)[1]
+        return self.with_error(_mean)[1]
 
     @property
     def sample(self) -> Sample:
         """The slices with their noise, for `difference`."""
         batches = len(self.estimates) if self.replicated else KNOWN
-        return Sample(self.slices, self.slices_sigma, _noise_dof(self.estimates[:, :, self.rho.size // 2 :]), batches)
+        axes = self.azimuth, self.rho, self.nu
+        return Sample(self.slices, axes, self.slices_sigma, _noise_dof(self.estimates[:, :, self.rho.size // 2 :]), batches)
 
     def wedge(self, d_min: float, d_max: float, *, focus: float = inf, limit: float = 0.01) -> Wedge:
         """Measures the wedge of a scene whose depths are between `d_min` and `d_max` (Chai, Tong, Chan, Shum 2000).
@@ -97,10 +98,14 @@ class GridSpectrum:
         spread = np.std([of(power) for power in without], 0)
         return of((abs(total) ** 2 - squares) / (count * (count - 1))), np.sqrt(count - 1) * spread
 
+    def _variables(self) -> Variables:
+        axes = {"slices": ("azimuth", "rho", "nu"), "slices_sigma": ("azimuth", "rho", "nu"), "power": ("rho", "nu"), "power_sigma": ("rho", "nu")}
+        return {name: (axes[name], getattr(self, name)) for name in axes}
+
     def plot(self, ax: Any = None, wedge: Wedge | None = None) -> Any:
         """Draws `power` in dB below its peak, on axes of matplotlib; returns the axes. Dotted lines are at whole multiples of the sampling
         rates of views and pixels. The lines of `wedge` are solid, and dashed in its replicas."""
-        rho = self.rho[self.rho.size // 2 :]
+        rho = self.rho
         ax = plotted(ax, rho, self.nu, self.power)
         limits = ax.get_xlim(), ax.get_ylim()
         rates = 1 / self.spacing["x"], 1 / self.spacing["u"]
@@ -117,9 +122,6 @@ class GridSpectrum:
     def __repr__(self) -> str:
         axes = ", ".join(f"1/{name} {1 / step:.4g}" for name, step in self.spacing.items())
         return f"<etendue.GridSpectrum {self.slices.shape}: repeats at {axes}>"
-
-    def _mean(self, power: Floats) -> Floats:
-        return power[:, self.rho.size // 2 :].mean(0)
 
 
 def grid_spectrum(
@@ -161,7 +163,7 @@ def grid_spectrum(
     if len(given) == 2:
         if frequencies.get("azimuths", 1) != 1:
             raise ValueError(f"azimuths is {frequencies.get('azimuths')} for [x, u]; allowed: 1, or nothing")
-        frequencies, window = {**frequencies, "azimuths": 1}, {"x": window["x"], "u": window["u"]}
+        frequencies, window = {**frequencies, "azimuths": 1}, cast(types.Window, {name: profile for name, profile in window.items() if name in "xu"})
     # A scene checks window and frequencies, and gives the axes.
     plane = Scene(around(window, frequencies), name="grid")._run.axes(0)  # pyright: ignore[reportPrivateUsage]
     azimuth, upper, all_nu = (np.asarray(plane[name], float) for name in ("azimuth", "rho", "nu"))
@@ -212,6 +214,10 @@ def grid_spectrum(
     kept = [axis for axis in axes if axis.name in given]
     spacing, half = {axis.name: axis.spacing for axis in kept}, {axis.name: axis.half_width for axis in kept}
     return GridSpectrum(azimuth, rho, all_nu, found, sigma, spacing, half, estimates, bool(replicates))
+
+
+def _mean(power: Floats) -> Floats:
+    return power.mean(0)
 
 
 def _noise_dof(estimates: Complex) -> float | None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from etendue import types
 from etendue.difference import Sample
-from etendue.plot import plotted
+from etendue.plot import Shown, Variables, plotted
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Scene
@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(Shown):
     """The windowed spectrum of rays, with errors."""
 
     azimuth: Floats
@@ -35,7 +35,7 @@ class Spectrum:
     slices_sigma: Floats
     """Standard error of |slices|, from the spread between batches."""
     power: Floats
-    """The mean of |slices|² over azimuths, [rho, nu] with rho ≥ 0, minus `shot_noise`. Where there is only noise, it may be negative."""
+    """The mean of |slices|² over azimuths, [rho, nu], minus `shot_noise`. Where there is only noise, it may be negative."""
     power_sigma: Floats
     """Standard error of `power`, by the jackknife: up to √2 too large where noise is above the signal."""
     shot_noise: Floats
@@ -74,11 +74,17 @@ class Spectrum:
     @property
     def sample(self) -> Sample:
         """The slices with their noise, for `difference`."""
-        return Sample(self.slices, self.slices_sigma, self.noise_dof, self.batches)
+        return Sample(self.slices, (self.azimuth, self.rho, self.nu), self.slices_sigma, self.noise_dof, self.batches)
+
+    def _variables(self) -> Variables:
+        slices, power, field = ("azimuth", "rho", "nu"), ("rho", "nu"), ("x", "u")
+        axes = {"slices": slices, "slices_sigma": slices, "power": power, "power_sigma": power, "shot_noise": power}
+        axes.update(light_field=field, light_field_sigma=field)
+        return {name: (axes[name], getattr(self, name)) for name in axes}
 
     def plot(self, ax: Any = None) -> Any:
         """Draws `power` in dB below its peak, on axes of matplotlib; returns the axes."""
-        return plotted(ax, self.rho[self.rho.size - self.power.shape[0] :], self.nu, self.power)
+        return plotted(ax, self.rho, self.nu, self.power)
 
     def __repr__(self) -> str:
         return f"<etendue.Spectrum {self.slices.shape}: {self.in_window} rays in the window, slope {self.slope}>"

@@ -9,21 +9,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from etendue import _etendue
 from etendue.difference import Sample
-from etendue.plot import plotted
+from etendue.plot import Shown, Variables, draw_each, picture, plotted, table
 from etendue.scene import Scene
-
-if TYPE_CHECKING:
-    import xarray
+from etendue.stored import NotStored, Stored
 
 Floats = NDArray[np.float64]
 Verdict = Literal["pass", "fail", "undecided"]
+Outcome = Union[_etendue.Outcome, Stored]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +45,7 @@ class Slices:
 
 @dataclass(frozen=True, eq=False)
 class Radial:
-    """The mean of the power spectrum over azimuths, [rho, nu]; rho also has negative values, as in `radial.npz`."""
+    """The mean of the power spectrum over azimuths, [rho, nu], as in `radial.npz`."""
 
     rho: Floats
     nu: Floats
@@ -75,10 +74,10 @@ class LightField:
     """Standard error of measured."""
 
 
-class Plane:
+class Plane(Shown):
     """A virtual plane: measurement, prediction and verdict. NumPy takes over the memory of the arrays without a copy."""
 
-    def __init__(self, outcome: _etendue.Outcome, number: int, summary: Mapping[str, Any]) -> None:
+    def __init__(self, outcome: Outcome, number: int, summary: Mapping[str, Any]) -> None:
         self._outcome = outcome
         self._number = number
         self._batches: int = summary["batches"]
@@ -128,32 +127,35 @@ class Plane:
         """The measured slices with their noise, for `difference`."""
         slices, number = self.slices, self._number
         noise = slices.sigma_measured, self.report["noise_dof"], self._batches
-        return Sample(slices.measured, *noise, self._numbers, lambda: self._outcome.batches(number))
+        axes = slices.azimuth, slices.rho, slices.nu
+        return Sample(slices.measured, axes, *noise, self._numbers, lambda: self._outcome.batches(number))
 
-    def to_xarray(self) -> xarray.Dataset:
-        """Slices and radial spectrum with their axes and units (needs xarray)."""
-        import xarray
+    def _variables(self) -> Variables:
+        slices, radial, axes = self.slices, self.radial, ("azimuth", "rho", "nu")
+        found: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {
+            "measured": (axes, slices.measured),
+            "predicted": (axes, slices.predicted),
+            "sigma": (axes, slices.sigma),
+            "power": (axes[1:], radial.measured),
+            "predicted_power": (axes[1:], radial.predicted),
+            "power_sigma": (axes[1:], radial.sigma),
+        }
+        try:
+            field, cells = self.light_field, ("x", "u")
+        except NotStored:
+            return found
+        found.update(light_field=(cells, field.measured), predicted_light_field=(cells, field.predicted), light_field_sigma=(cells, field.sigma))
+        return found
 
-        slices, radial = self.slices, self.radial
-        axes = ("azimuth", "rho", "nu")
-        # The radial spectrum has rho ≥ 0.
-        half = radial.rho.size - radial.measured.shape[0]
-        return xarray.Dataset(
-            {
-                "measured": (axes, slices.measured),
-                "predicted": (axes, slices.predicted),
-                "sigma": (axes, slices.sigma),
-                "power": (axes[1:], radial.measured, {"long_name": "radial power"}),
-                "predicted_power": (axes[1:], radial.predicted),
-                "power_sigma": (axes[1:], radial.sigma),
-            },
-            coords={
-                "azimuth": ("azimuth", slices.azimuth, {"units": "rad"}),
-                "rho": ("rho", slices.rho[half:] if half else slices.rho, {"units": "cycles/m"}),
-                "nu": ("nu", slices.nu, {"units": "cycles/slope"}),
-            },
-            attrs={"plane": self.name, "verdict": self.verdict},
-        )
+    def _axes(self) -> Mapping[str, NDArray[Any]]:
+        axes = {name: getattr(self.slices, name) for name in ("azimuth", "rho", "nu")}
+        try:
+            return {**axes, "x": self.light_field.x, "u": self.light_field.u}
+        except NotStored:
+            return axes
+
+    def _attributes(self) -> Mapping[str, Any]:
+        return {"plane": self.name, "verdict": self.verdict}
 
     def plot(self, ax: Any = None, what: Literal["measured", "predicted"] = "measured") -> Any:
         """Draws the radial spectrum, in dB below its peak, on axes of matplotlib; returns the axes."""
@@ -168,13 +170,29 @@ class Plane:
 class Result(Mapping[str, Plane]):
     """The results of a run: its planes by name, and the verdict."""
 
-    def __init__(self, scene: Scene, outcome: _etendue.Outcome) -> None:
-        self.scene = scene
+    def __init__(self, scene: Scene | None, outcome: Outcome) -> None:
+        self._scene = scene
         self._outcome = outcome
         self.summary: Mapping[str, Any] = json.loads(outcome.summary())
         """`summary.json`, without the hashes of files."""
         planes = (Plane(outcome, i, self.summary) for i in range(len(self.summary["planes"])))
         self._planes = {plane.name: plane for plane in planes}
+
+    @property
+    def name(self) -> str:
+        """The name of the scene."""
+        return self.summary["scene"]
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that was run.
+
+        A stored result has no copies of meshes and pictures, so for a scene that names some, this raises `SceneError`: read the scene file.
+        """
+        if self._scene is not None:
+            return self._scene
+        method = self.summary["method"]
+        return Scene(self.summary["scene_file"], method=method, name=self.name)
 
     @property
     def verdict(self) -> Verdict:
@@ -198,7 +216,10 @@ class Result(Mapping[str, Plane]):
         return len(self._planes)
 
     def __reduce__(self) -> tuple[object, ...]:
-        run, outcome = self.scene._run, self._outcome  # pyright: ignore[reportPrivateUsage]
+        outcome = self._outcome
+        if isinstance(outcome, Stored):
+            return _stored, (outcome.path,)
+        run = self.scene._run  # pyright: ignore[reportPrivateUsage]
         return _compared, (self.scene, run.packed(outcome.measurement()), run.packed_prediction(outcome.prediction()))
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -208,20 +229,31 @@ class Result(Mapping[str, Plane]):
         """
         return Path(self._outcome.save(folder, force))
 
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the measured spectrum of each plane, side by side, on an array of axes of matplotlib; by default, in a new figure. Returns the
+        axes."""
+        if axes is None:
+            import matplotlib.pyplot as plt
+
+            axes = plt.subplots(1, len(self), figsize=(4.2 * len(self), 3.2), layout="constrained")[1]
+        draw_each(self.values(), axes)
+        return axes
+
     def __str__(self) -> str:
-        return self._outcome.table()
+        if not isinstance(self._outcome, Stored):
+            return self._outcome.table()
+        rows = [_HEADS, *map(_cells, self._planes.values())]
+        widths = [max(map(len, column)) for column in zip(*rows)]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
+        return "\n".join([f"{self.name}: {self.summary['photons']:,} photons, seed {self.summary['seed']}", "", *lines, "", f"verdict: {self.verdict}"])
 
     def __repr__(self) -> str:
-        return f"<etendue.Result of {self.scene.name}: {self.verdict}>"
+        return f"<etendue.Result of {self.name}: {self.verdict}>"
 
     def _repr_html_(self) -> str:
-        rows = "".join(_row(plane.report) for plane in self._planes.values())
-        heads = "".join(f"<th>{head}</th>" for head in ("plane", "class", "p", "p of power", "rel. error", "noise alone", "verdict"))
         photons = f"{self.summary['photons']:,}".replace(",", "\u202f")
-        return (
-            f"<p><b>{escape(self.scene.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
-            f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
-        )
+        head = f"<p><b>{escape(self.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
+        return head + table(_HEADS, map(_cells, self._planes.values())) + picture(*self.values())
 
 
 def _compared(scene: Scene, batches: list[tuple[int, bytes]], planes: list[bytes]) -> Result:
@@ -230,21 +262,22 @@ def _compared(scene: Scene, batches: list[tuple[int, bytes]], planes: list[bytes
     return Result(scene, run.compare(run.unpacked(batches), run.unpacked_prediction(planes), None))
 
 
-def _row(report: Mapping[str, Any]) -> str:
+def _stored(path: str) -> Result:
+    """A result that was pickled as the path of its folder."""
+    return Result(None, Stored(path))
+
+
+_HEADS = ["plane", "class", "p", "p of power", "rel. error", "noise alone", "verdict"]
+
+
+def _cells(plane: Plane) -> list[str]:
     def share(value: float | None) -> str:
         return "–" if value is None else f"{100 * value:.3f} %"
 
     def p(value: float | None) -> str:
         return "–" if value is None else f"{value:.5f}"
 
+    report = plane.report
     radial: Mapping[str, Any] | None = report["radial"]
-    cells = [
-        report["name"],
-        report["class"],
-        p(report["p_value"]),
-        p(radial["p_value"] if radial else None),
-        share(report["relative_error"]),
-        share(report["noise_limit"]),
-        report["verdict"],
-    ]
-    return "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in cells) + "</tr>"
+    tests = p(report["p_value"]), p(radial["p_value"] if radial else None)
+    return [plane.name, report["class"], *tests, share(report["relative_error"]), share(report["noise_limit"]), plane.verdict]

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Union, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, Union, cast, get_args
+
+import numpy as np
+from numpy.typing import NDArray
 
 from etendue import types
 from etendue._etendue import Run
@@ -15,6 +19,7 @@ from etendue._etendue import Run
 if TYPE_CHECKING:
     from etendue._etendue import SceneArgument
 
+T = TypeVar("T")
 Method = Literal["photons", "backward", "given"]
 """Photons from the light, rays traced back from the windows, or rays that the user gives to `spectrum`, which are not traced."""
 Value = Union[bool, int, float, str, Sequence[float]]
@@ -62,12 +67,16 @@ class Scene:
         fields = field_texts(set)
         count = None if photons is None else _whole(photons)
         seed = None if seed is None else _seed(seed)
+        if isinstance(source, str) and "\n" in source:
+            raise ValueError("scene is the text of a scene; allowed: the path of a scene file, or a tree such as json.loads returns")
         if isinstance(source, (str, os.PathLike)):
             self._folder = os.fspath(Path(source).absolute().parent)
             self._run = Run.read(source, fields, count, seed, method)
         else:
             self._folder = os.fspath(Path(folder).absolute())
-            self._run = Run.read((json.dumps(source), name, self._folder), fields, count, seed, method)
+            if not isinstance(source, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+                raise TypeError(f"scene is {source!r}; allowed: the path of a scene file, or a tree of its fields")
+            self._run = Run.read((json.dumps(_plain(source, "")), name, self._folder), fields, count, seed, method)
         self._method: Method = method
 
     @property
@@ -151,7 +160,31 @@ def method_of(scene: Scene | Source) -> Method | None:
 
 def field_texts(set: Mapping[str, Value] | None) -> list[tuple[str, str]]:
     """Fields and their values as written in scene files."""
-    return [(path, value_text(value)) for path, value in (set or {}).items()]
+    return [(path, value_text(path, value)) for path, value in fields(set or {})]
+
+
+def fields(set: Mapping[str, T]) -> Iterable[tuple[str, T]]:
+    """The paths and values of fields."""
+    if not isinstance(set, Mapping):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError(f"set is {set!r}; allowed: a mapping from paths to values, such as {{'blockers.0.pitch': 0.1}}")
+    return set.items()
+
+
+def _plain(value: Any, path: str) -> Any:
+    """A tree of values that JSON has, with numbers and arrays of NumPy as numbers and lists."""
+    if isinstance(value, Mapping):
+        tree = cast("Mapping[str, Any]", value)
+        return {name: _plain(part, f"{path}.{name}" if path else str(name)) for name, part in tree.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = cast("NDArray[Any]", value).tolist()
+    if isinstance(value, (list, tuple)):
+        parts = cast("Sequence[Any]", value)
+        return [_plain(part, f"{path}.{number}") for number, part in enumerate(parts)]
+    if value is not None and not isinstance(value, (bool, int, float, str)):
+        raise TypeError(f"{path} is {value!r}; allowed: numbers, texts, sequences and mappings")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{path} is {value}; allowed: finite numbers")
+    return value
 
 
 def _whole(photons: float) -> int:
@@ -166,8 +199,8 @@ def _seed(seed: int) -> int:
     return int(seed)
 
 
-def value_text(value: Value) -> str:
-    """A value as written in scene files."""
+def value_text(path: str, value: Value) -> str:
+    """The value of a field as written in scene files."""
     if isinstance(value, str):
         return value
     if isinstance(value, bool):
@@ -176,6 +209,10 @@ def value_text(value: Value) -> str:
         # Numbers of NumPy are written in another way.
         return repr(float(value)) if isinstance(value, float) else repr(int(value))
     try:
-        return repr(float(value))  # type: ignore[arg-type]  # numbers of NumPy
-    except TypeError:
-        return "(" + ", ".join(repr(float(number)) for number in value) + ")"
+        numbers = np.asarray(value, np.float64)
+    except (TypeError, ValueError):
+        numbers = np.empty((0, 0))
+    # `None` would become a number that is not one.
+    if numbers.ndim > 1 or value is None:  # pyright: ignore[reportUnnecessaryComparison]
+        raise TypeError(f"in set, {path}: {value!r}; allowed: a number, a sequence of numbers, or text such as 'Hann(0.5)'")
+    return repr(float(numbers)) if numbers.ndim == 0 else "(" + ", ".join(repr(float(number)) for number in numbers) + ")"

@@ -101,6 +101,11 @@ def slices_of(compressed: Floats, axes: list[Axis]) -> Complex:
     return full(np.stack(half, -3))
 
 
+def conjugated(half: NDArray[Any]) -> NDArray[Any]:
+    """Slices of a real light field for all rho, from those with rho ≥ 0."""
+    return np.concatenate([half[..., :0:-1, ::-1].conj(), half], axis=-2)
+
+
 def full(half: NDArray[Any]) -> NDArray[Any]:
     """Slices of a real light field for all nu, from those with nu ≥ 0."""
     return np.concatenate([half[..., ::-1, :0:-1].conj(), half], axis=-1)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,7 @@ from etendue.progress import Progress, told
 from etendue.ranges import thread_count, whole
 from etendue.result import Result
 from etendue.scene import Method, Scene, Source, Value, as_scene
+from etendue.stored import Stored
 
 
 class Measurement:
@@ -151,6 +154,25 @@ def run(
     """
     scene = as_scene(scene, set, photons, seed, method)
     return compare_with(measure(scene, threads=threads, progress=progress), None, threads)
+
+
+def load(folder: str | os.PathLike[str]) -> Result | Measurement:
+    """Reads what is stored in a folder.
+
+    A folder of `etendue run` or `compare`, or of `Result.save`, gives a `Result` with the same numbers and arrays as that of `run`; the
+    folder of `etendue measure`, which may be a part, gives a `Measurement`, for `merge` and `compare`. Arrays are read when they are first
+    used, and each file must be as it was written. Only `str()` differs: it has no parameters. `sigma` of a light field is known to rounding.
+
+    Raises `SceneError` if there is no such folder, if it has no result, or if a file has changed. An array that the folder does not have
+    raises `CannotRun`, with the option that stores it: `--save batches` stores the batches that `difference` compares in pairs, and
+    `--compact` leaves out light fields.
+    """
+    stored = Stored(folder)
+    if stored.is_result:
+        return Result(None, stored)
+    index, inputs = stored.index, Path(stored.path) / "measurement.inputs"
+    scene = Scene(index["scene_file"], method=index["method"], name=index["scene"], folder=inputs)
+    return Measurement(scene, scene._run.stored(folder))  # pyright: ignore[reportPrivateUsage]
 
 
 @dataclass(frozen=True, eq=False)

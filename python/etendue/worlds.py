@@ -6,8 +6,9 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,14 @@ from numpy.typing import NDArray
 from etendue import _etendue, types
 from etendue.commands import given
 from etendue.difference import Sample
+from etendue.plot import Shown, Variables, axes_of, picture, plotted
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Value, field_texts
 from etendue.variance import Variance
+
+if TYPE_CHECKING:
+    import xarray
 
 Point = Sequence[float]
 Size = Union[str, "tuple[int, int]"]
@@ -27,7 +32,7 @@ Sampling = Literal["reference", "auto", "uniform", "predicted", "paper", "weight
 
 
 @dataclass(frozen=True)
-class Picture:
+class Picture(Shown):
     """The picture that a camera sees: arrays [row, column], with row 0 at the top."""
 
     radiance: NDArray[np.float64]
@@ -36,6 +41,26 @@ class Picture:
     """Standard error of the radiance; NaN for pictures from few shading samples, which have no error."""
     folder: Path
     """The folder of picture.exr and picture.png."""
+
+    def _variables(self) -> Variables:
+        return {name: (("row", "column"), getattr(self, name)) for name in ("radiance", "error")}
+
+    def _axes(self) -> Mapping[str, NDArray[Any]]:
+        rows, columns = self.radiance.shape
+        axes: dict[str, NDArray[Any]] = {"row": np.arange(rows), "column": np.arange(columns)}
+        return axes
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the radiance up to its 99th percentile, row 0 at the top, on axes of matplotlib; returns the axes."""
+        ax = axes_of(ax)
+        image = ax.imshow(self.radiance, cmap="gray", vmin=0, vmax=float(np.percentile(self.radiance, 99)) or None)
+        ax.set(xlabel="column", ylabel="row")
+        ax.figure.colorbar(image, ax=ax, label="radiance [W m⁻² sr⁻¹]")
+        return ax
+
+    def __repr__(self) -> str:
+        rows, columns = self.radiance.shape
+        return f"<etendue.Picture {columns} × {rows} in {self.folder}>"
 
 
 @dataclass(frozen=True)
@@ -68,9 +93,9 @@ class Probe:
         """The spectrum that rays traced back measured at a plane, for `difference`, with the position and the window of the plane."""
         found = self._plane(plane)
         arrays = self.slices(plane)
-        sigma = arrays.get("measured_sigma", arrays["sigma"])
-        sample = Sample(arrays["measured"], sigma, found["report"]["noise_dof"], self.batches)
-        return ProbedPlane(sample, found["report"]["frame"], found["report"]["distance"], found["window"], found["frequencies"])
+        sigma, axes = arrays.get("measured_sigma", arrays["sigma"]), (arrays["azimuth"], arrays["rho"], arrays["nu"])
+        sample = Sample(arrays["measured"], axes, sigma, found["report"]["noise_dof"], self.batches)
+        return ProbedPlane(plane, sample, found["report"]["frame"], found["report"]["distance"], found["window"], found["frequencies"])
 
     def variance(self, plane: str) -> Variance:
         """The variances of samplers at a plane, if they were requested. The spectrum is from rays traced back, and the text is that of the probe."""
@@ -85,14 +110,28 @@ class Probe:
             raise KeyError(f"no plane {name!r}; there are {', '.join(names)}")
         return self.planes[names.index(name)]
 
+    def to_xarray(self, plane: str) -> xarray.Dataset:
+        """The spectrum that rays traced back measured at a plane, as an xarray dataset. Raises `ImportError` without xarray."""
+        return self.measured(plane).to_xarray()
+
+    def plot(self, plane: str, ax: Any = None) -> Any:
+        """Draws the spectrum that rays traced back measured at a plane, on axes of matplotlib; returns the axes."""
+        return self.measured(plane).plot(ax)
+
+    def _repr_html_(self) -> str:
+        planes = (self.measured(found["report"]["name"]) for found in self.planes)
+        return f"<pre>{escape(self.text)}</pre>{picture(*planes)}"
+
     def __str__(self) -> str:
         return self.text
 
 
 @dataclass(frozen=True)
-class ProbedPlane:
+class ProbedPlane(Shown):
     """The measurement of a probe at a plane."""
 
+    name: str
+    """The name of the plane."""
     sample: Sample
     """The slices with their noise."""
     frame: Mapping[str, Any]
@@ -103,6 +142,23 @@ class ProbedPlane:
     """The window of the plane."""
     frequencies: types.Frequencies
     """The frequencies of the slices."""
+
+    def _variables(self) -> Variables:
+        axes = ("azimuth", "rho", "nu")
+        return {"slices": (axes, self.sample.slices), "slices_sigma": (axes, self.sample.slices_sigma)}
+
+    def _axes(self) -> Mapping[str, NDArray[Any]]:
+        return dict(zip(("azimuth", "rho", "nu"), self.sample.axes))
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the mean power over azimuths, without that of the noise, in dB below its peak, on axes of matplotlib; returns the axes."""
+        power = (abs(self.sample.slices) ** 2 - self.sample.slices_sigma**2).mean(0)
+        ax = plotted(ax, self.sample.axes[1], self.sample.axes[2], power)
+        ax.set(title=self.name)
+        return ax
+
+    def __repr__(self) -> str:
+        return f"<etendue.ProbedPlane {self.name}: {self.sample.slices.shape}>"
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ mod arrays;
 mod difference;
 mod figure;
 mod fit;
+mod folder;
 mod import;
 mod live;
 mod outcome;
@@ -33,6 +34,8 @@ mod _etendue {
     #[pymodule_export]
     use crate::fit::fit;
     #[pymodule_export]
+    use crate::folder::Folder;
+    #[pymodule_export]
     use crate::import::import_scene;
     #[pymodule_export]
     use crate::outcome::{Measurement, Outcome, Prediction};
@@ -45,7 +48,7 @@ mod _etendue {
     #[pymodule_export]
     use crate::run::Run;
     #[pymodule_export]
-    use crate::sweep::sweep;
+    use crate::sweep::{derivative, sweep};
     #[pymodule_export]
     use crate::variance::variance;
 

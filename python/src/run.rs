@@ -7,8 +7,8 @@ use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
 use crate::scene::SceneArgument;
 use etendue_field::{Complex, Crossing, VirtualPlane};
-use etendue_pipeline::Silent;
 use etendue_pipeline::method::source;
+use etendue_pipeline::{Silent, stored_batches};
 use etendue_spectrum::Watch;
 use etendue_store::{Failure, Method, predictions, theory};
 use etendue_theory::{ChainAction, ChainStep};
@@ -17,7 +17,7 @@ use numpy::{PyArray1, PyArray2, PyArray4, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A map of rays as its matrix, its offset, and the factor by which it multiplies radiance.
@@ -148,6 +148,14 @@ impl Run {
             run.measure(&batches, &live.trace(photons, "photons"))
         });
         found.map(Measurement)
+    }
+
+    /// The batches in a folder of a measurement of this scene.
+    fn stored(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Measurement> {
+        let found = py.detach(|| stored_batches(&folder, &self.0.scene));
+        found
+            .map(Measurement)
+            .map_err(|failure| raised(py, failure))
     }
 
     fn predict(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Prediction> {

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import os
 import re
 import subprocess
@@ -65,6 +66,17 @@ def test_the_notebook(tmp_path):
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("image/png" in output.get("data", {}) for output in outputs)
     assert any("<table>" in output.get("data", {}).get("text/html", "") for output in outputs)
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "docs").glob("*.ipynb")), ids=lambda path: path.stem)
+def test_notebooks_are_committed_with_their_pictures(path):
+    """So that they are read without being run."""
+    cells = [cell for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == "code"]
+    for cell in cells:
+        assert not any(output["output_type"] == "error" or output.get("name") == "stderr" for output in cell["outputs"])
+        if "plt.show()" in "".join(cell["source"]):
+            assert any("image/png" in output.get("data", {}) for output in cell["outputs"])
+    assert any(cell["outputs"] for cell in cells)
 
 
 def test_dask_merges_to_the_same_bytes(tmp_path):

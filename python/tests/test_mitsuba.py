@@ -121,7 +121,10 @@ def test_the_notebook():
     nbclient.NotebookClient(notebook, timeout=300).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert sum("image/png" in output.get("data", {}) for output in outputs) == 4
-    said = "".join(output.get("text", "") for output in outputs).partition("no hair")[0]
+    said, _, hair = "".join(output.get("text", "") for output in outputs).partition("no hair")
+    # Hair adds frequencies across it alone.
+    (bare, along), (across, same) = ([float(x) for x in row] for row in re.findall(r"([0-9.]+) % across, ([0-9.]+) % along", hair))
+    assert across > 1.3 * bare and abs(same - along) < 0.1 * along
     rows = [[float(number) for number in line.split()] for line in said.splitlines()[1:]]
     assert len(rows) == 5
     assert all(abs(measured - theory) < 0.25 for _, measured, theory in rows)  # an eighth of the step between frequencies of the ridge

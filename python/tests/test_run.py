@@ -266,6 +266,7 @@ def test_pairs_show_changes_below_the_noise(result):
         assert found.paired == paired
         # One in a thousand, since the seeds are fixed.
         assert (found.p_value > 1e-3) != paired
+        assert np.nanmean(found.z**2) == pytest.approx(found.chi2_per_dof, rel=0.02)
     same = etendue.difference(result["receiver"], result["receiver"])
     assert same.difference == same.noise == 0 and same.p_value is None
 
@@ -306,3 +307,60 @@ def test_two_measurements_differ_by_noise_alone(result):
         assert (etendue.difference(found, result["receiver"]).p_value > 1e-3) == agrees
     with pytest.raises(ValueError, match="same frequencies"):
         etendue.difference(result["receiver"], result["leaving"])
+
+
+WINDOW, FREQUENCIES = {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}, {"rho": {"max": 4}, "nu": {"max": 4}}
+LIGHT = {"Rectangle": {"center": [0, 0, 0], "size": [0.2, 0.2]}}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"window": {"x": {"Han": 1}, "u": {"Hann": 1}}}, "window.x: unknown variant `Han`.*did you mean Hann"),
+        ({"window": {"x": {"Hann": "a"}, "u": {"Hann": 1}}}, "window.x: "),
+        ({"window": {"x": {"Hann": 1}}}, "window: missing field `u`"),
+        ({"window": {**WINDOW, "z": {"Hann": 1}}}, "window.z: unknown field"),
+        ({"window": {"x": {"Hann": float("nan")}, "u": {"Hann": 1}}}, "window.x.Hann is nan"),
+        ({"window": {"x": {"Hann": {0.5}}, "u": {"Hann": 1}}}, "window.x.Hann is {0.5}; allowed: numbers, texts"),
+        ({"window": None}, "window: invalid type"),
+        ({"frequencies": {"rho": {}, "nu": {"max": 4}}}, "frequencies.rho: missing field `max`"),
+        ({"frequencies": {"rho": {"max": "a"}, "nu": {"max": 4}}}, "frequencies.rho.max: "),
+        ({"frequencies": {**FREQUENCIES, "azimuths": 1.5}}, "frequencies.azimuths: "),
+    ],
+)
+def test_faults_name_the_argument(change, message):
+    """And not a line of a text that the user has not written."""
+    words = {"window": WINDOW, "frequencies": FREQUENCIES, **change}
+    grid = np.linspace(-0.6, 0.6, 12)
+    field = {"light_field": np.zeros((12,) * 4), **dict.fromkeys("xyuv", grid)}
+    for call in (lambda: etendue.spectrum(*np.zeros((4, 100)), **words), lambda: etendue.grid_spectrum(**field, **words)):
+        with pytest.raises((ValueError, TypeError), match=message) as raised:
+            call()
+        assert not any(word in str(raised.value) for word in ("line ", "column ", "--"))
+
+
+@pytest.mark.parametrize(
+    ("scene", "set", "message"),
+    [
+        (3, None, "scene is 3; allowed: the path"),
+        ("(\n  light: 1\n)", None, "scene is the text of a scene"),
+        ({"lihgt": 1}, None, "lihgt: unknown field.*did you mean light"),
+        ({"light": LIGHT}, None, "missing field `path`"),
+        ({"light": {"Rectangl": {}}}, None, "light: unknown variant.*did you mean Rectangle"),
+        (FIG9B, "blockers.0.pitch=1", "set is 'blockers.0.pitch=1'; allowed: a mapping"),
+        (FIG9B, {"light.center": None}, "in set, light.center: None; allowed"),
+        (FIG9B, {"window.x": {"Hann": 0.5}}, "in set, window.x: {'Hann': 0.5}; allowed: .*'Hann"),
+        (FIG9B, {"window.x": "Hnn(0.5)"}, "in set, window.x=Hnn.*did you mean Hann"),
+        (FIG9B, {"blockers.0.ptch": 1}, "in set, blockers.0.ptch=1: no field"),
+    ],
+)
+def test_faults_name_the_field(scene, set, message):
+    with pytest.raises((ValueError, TypeError), match=message) as raised:
+        etendue.check(scene, set=set)
+    assert not any(word in str(raised.value) for word in ("line ", "column ", "--"))
+
+
+def test_trees_may_have_numbers_of_numpy():
+    window = {"x": {"Hann": np.float32(0.5)}, "u": {"Hann": np.int64(1)}}
+    scene = {**etendue.Scene(FIG9B).file, "window": window, "light": {"Rectangle": {"center": np.zeros(3), "size": (0.2, 0.2)}}}
+    assert etendue.Scene(scene).file["window"]["x"] == {"Hann": 0.5}

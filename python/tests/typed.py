@@ -29,3 +29,8 @@ triangles: int = etendue.import_scene("cbox.xml", set={"res": 64}).counts["trian
 mean = etendue.variance(scene, samplers=["sobol", np.zeros((4, 4)), Path("set.npy")], counts="4..64", unshifted=True, threads=2)
 gain: float = mean["sobol"].shifted.gain.max()
 share: float = mean.power["x", "u"][0]
+stored = etendue.load("out/fig9b")
+found = stored if isinstance(stored, etendue.Result) else etendue.compare(stored)
+centres = found["far"].to_xarray()["x"].size
+by_field = etendue.derivative(etendue.examples["fig9b"], "blockers.0.pitch", 0.01, set={"run.seed": 3})
+tangent: float = by_field["far"].numbers["slope"].measured

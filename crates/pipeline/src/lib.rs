@@ -38,7 +38,7 @@ pub use checkpoint::Checkpointing;
 pub use follower::{follow_points, follow_run, report_failure};
 pub use judged::{Judged, judged};
 pub use measure::{MeasuredScene, measured};
-pub use read_case::{PredictionSource, batches_of_run, read_case, read_measurement};
+pub use read_case::{PredictionSource, read_case, read_measurement, stored_batches};
 pub use reporter::{Progress, Reporter, Silent, Work};
 pub use run::{Outcome, Run, Tracing};
 pub use summary::{Inquiry, Summary};

@@ -1,6 +1,8 @@
 //! Reads and resolves scene files, and creates folders for the results of a stage.
 
-use etendue_scene::{Color, RunFile, Scene, SceneFile, limits, read_below, read_file, resolve};
+use etendue_scene::{
+    Color, RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
+};
 use etendue_store::stored::copy_of;
 use etendue_store::{ArgumentStyle, Failure, Plan, Results, machine};
 use std::borrow::Cow;
@@ -76,8 +78,13 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     let arguments = source.arguments;
     let shown = source.shown();
     let text = source.read()?;
-    let mut file =
-        SceneFile::parse(&text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
+    let unread = |error| match error {
+        // The user of a scene without a file has not written its text.
+        SceneError::Syntax { message, .. } if source.text.is_some() => message,
+        error => error.to_string(),
+    };
+    let mut file = SceneFile::parse(&text)
+        .map_err(|error| Failure::bad_input(format!("{shown}: {}", unread(error))))?;
     let unset = |e| Failure::bad_input(format!("{shown}: {}", arguments.in_set(e)));
     file = file.with_all(&source.set).map_err(unset)?;
     file.run.color = source.color.unwrap_or(file.run.color);

@@ -69,13 +69,13 @@ pub fn read_measurement(measured: &[PathBuf]) -> Result<(Measurement, Vec<PathBu
     Ok((measurement, shards.iter().flat_map(Stored::paths).collect()))
 }
 
-/// The batches of a run of `scene` that has saved them.
-pub fn batches_of_run(folder: &Path, scene: &Scene) -> Result<Measurement, Failure> {
-    let run = shard(folder)?;
-    if !run.is_of(scene) {
-        return Err(run.fault("the run is one of another scene"));
+/// The batches of a part of a measurement of `scene`, or of a run that has saved them.
+pub fn stored_batches(folder: &Path, scene: &Scene) -> Result<Measurement, Failure> {
+    let part = shard(folder)?;
+    if !part.is_of(scene) {
+        return Err(part.fault("the measurement is one of another scene"));
     }
-    merged(&[run], scene)
+    batches_of(&part, scene)
 }
 
 /// A part of a measurement, or a run that has saved its batches.
@@ -113,14 +113,7 @@ fn shards(measured: &[PathBuf]) -> Result<Vec<Stored<Held>>, Failure> {
 fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure> {
     let mut all = Measurement::new(scene.planes.clone());
     for shard in shards {
-        let held = &shard.index.content;
-        let Range { start, end } = held.batches;
-        if start >= end || end > scene.run.batches {
-            let all = scene.run.batches;
-            return Err(shard.fault(format!("batches {start}..{end}; allowed: within 0..{all}")));
-        }
-        let part = batches::read(shard, &scene.planes)?;
-        all = all.merge(part).map_err(|e| {
+        all = all.merge(batches_of(shard, scene)?).map_err(|e| {
             Failure::bad_input(format!("cannot add {}: {e}", shard.folder.display()))
         })?;
     }
@@ -132,6 +125,15 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
         )));
     }
     Ok(all)
+}
+
+fn batches_of(part: &Stored<Held>, scene: &Scene) -> Result<Measurement, Failure> {
+    let Range { start, end } = part.index.content.batches;
+    if start >= end || end > scene.run.batches {
+        let all = scene.run.batches;
+        return Err(part.fault(format!("batches {start}..{end}; allowed: within 0..{all}")));
+    }
+    batches::read(part, &scene.planes)
 }
 
 /// The numbers of the missing batches, written as ranges.

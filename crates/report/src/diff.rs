@@ -12,5 +12,4 @@ mod text;
 
 pub use difference::Diff;
 pub use json::json;
-pub use stored::no_result;
 pub use text::text;

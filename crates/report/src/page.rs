@@ -3,11 +3,11 @@
 
 mod data;
 
-use crate::diff::no_result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub use data::data;
 use etendue_scene::read_file;
+use etendue_store::stored::no_result;
 use etendue_store::{Failure, SUMMARY};
 use serde::de::IgnoredAny;
 use std::path::Path;

@@ -30,9 +30,12 @@ pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> St
         Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),
         _ => String::new(),
     };
-    let told = match told {
-        "expected value" => "not a JSON value",
-        other => other,
+    let told = match told.split_once(", expected struct ") {
+        // The name of a type of this program tells the user nothing.
+        Some((found, _)) => format!("{found}, expected fields"),
+        None if told == "expected value" => "no value of this kind".to_owned(),
+        None => told.to_owned(),
     };
-    format!("{field}: {told}{meant}; allowed: {}", wanted(&field))
+    let at = if field.is_empty() { "" } else { ": " };
+    format!("{field}{at}{told}{meant}; allowed: {}", wanted(&field))
 }

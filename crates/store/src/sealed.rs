@@ -31,6 +31,13 @@ pub fn sealed(json: &[u8]) -> Vec<u8> {
     [&body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
 }
 
+/// Returns the JSON object that was sealed, or `None` if the bytes do not end with their own hash.
+pub fn unsealed(bytes: &[u8]) -> Option<Vec<u8>> {
+    let text = str::from_utf8(bytes).ok().filter(|_| is_sealed(bytes))?;
+    let (body, _) = text.rsplit_once(",\n  \"format\": ")?;
+    Some([body, END].concat().into_bytes())
+}
+
 /// Fails if a JSON file has another format than this version reads.
 ///
 /// # Errors
@@ -71,13 +78,14 @@ pub fn is_sealed(bytes: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_sealed, sealed};
+    use super::{is_sealed, sealed, unsealed};
     use crate::version::FORMAT;
 
     #[test]
     fn every_changed_bit_breaks_the_seal() {
         let whole = sealed(b"{\n  \"a\": 1\n}\n");
         assert!(is_sealed(&whole));
+        assert_eq!(unsealed(&whole).unwrap(), b"{\n  \"a\": 1\n}\n");
         let json: serde_json::Value = serde_json::from_slice(&whole).unwrap();
         assert_eq!([&json["a"], &json["format"]], [1, FORMAT]);
         for bit in 0..8 * whole.len() {

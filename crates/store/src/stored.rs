@@ -6,9 +6,10 @@ use crate::npz::NpzFile;
 use crate::sealed::json;
 use crate::version::VERSION;
 use crate::{
-    ArgumentStyle, Failure, Finished, MAX_INDEX_BYTES, Method, Results, SUMMARY, machine, sealed,
+    ArgumentStyle, Failure, Finished, MAX_INDEX_BYTES, MEASUREMENT, Method, Plan, Results, SUMMARY,
+    machine, sealed,
 };
-use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
+use etendue_scene::{Color, Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json as tree_of};
@@ -215,9 +216,108 @@ impl<T> Stored<T> {
     }
 }
 
+/// A result of `run` or `compare`, or a measurement, by any version of this program. Every file is
+/// verified when it is read.
+#[derive(Debug)]
+pub struct ResultFolder {
+    /// Path of the folder.
+    pub folder: PathBuf,
+    /// Name of the index: `summary.json` or `measurement.json`.
+    pub name: &'static str,
+    /// The bytes of the index.
+    pub index: Vec<u8>,
+    files: BTreeMap<String, String>,
+}
+
+impl ResultFolder {
+    /// Reads the index of a folder, which must be unchanged.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        let mut names = [SUMMARY, MEASUREMENT].into_iter();
+        let name = names.find(|name| folder.join(name).is_file());
+        let name = name.ok_or_else(|| no_result(folder))?;
+        let path = folder.join(name);
+        let shown = path.display();
+        let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
+        let index = read_below(folder, name, MAX_INDEX_BYTES)
+            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        sealed::check_format(&index).map_err(fault)?;
+        #[derive(Deserialize)]
+        struct Files {
+            files: BTreeMap<String, String>,
+        }
+        let Files { files } = serde_json::from_slice(&index)
+            .map_err(|e| fault(format!("the file is not a summary of a run: {e}")))?;
+        sealed::check_seal(&index).map_err(fault)?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            name,
+            index,
+            files,
+        })
+    }
+
+    /// The hash of the file `name`, if the index lists it.
+    #[must_use]
+    pub fn hash(&self, name: &str) -> Option<&String> {
+        self.files.get(name)
+    }
+
+    /// The file `name`, whose bytes must be unchanged.
+    pub fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
+        listed_bytes(&self.folder, self.name, &self.files, name)
+    }
+
+    /// Writes the index and all files that it lists to another folder, byte by byte; returns the
+    /// folder. `arguments` is the style in which messages name `force`.
+    pub fn copy(
+        &self,
+        out: &Path,
+        force: bool,
+        arguments: ArgumentStyle,
+    ) -> Result<PathBuf, Failure> {
+        let tree: Value = serde_json::from_slice(&self.index).unwrap_or_default();
+        check_earlier_file(out, self.name, tree["scene_file"].clone(), force, arguments)?;
+        let plan = Plan {
+            index: self.name,
+            files: self.files.keys().cloned().collect(),
+            inputs: Vec::new(),
+            force,
+            arguments,
+        };
+        let mut results = Results::claim(out, plan)?;
+        for name in self.files.keys() {
+            results.write(name, &self.bytes(name)?)?;
+        }
+        let index = sealed::unsealed(&self.index).unwrap_or_default();
+        Ok(results.finish(|_| index)?.folder)
+    }
+}
+
+/// The error of a folder without a result. The folder of `run --rgb` has a result in each
+/// of its folders.
+#[must_use]
+pub fn no_result(folder: &Path) -> Failure {
+    let shown = folder.display();
+    let colors = [Color::Red, Color::Green, Color::Blue].map(Color::name);
+    let is_rgb = colors
+        .iter()
+        .all(|c| folder.join(c).join(SUMMARY).is_file());
+    Failure::bad_input(if is_rgb {
+        format!(
+            "{shown} holds results of three channels; allowed: one of {shown}/red, {shown}/green and {shown}/blue"
+        )
+    } else if folder.is_dir() {
+        format!(
+            "{shown} holds no result, because it has no {SUMMARY}; allowed: a folder that run, compare or measure has written"
+        )
+    } else {
+        format!("{shown}: no such folder")
+    })
+}
+
 /// The file `name` of a folder. The hash of its bytes must equal the hash in `files`, which
 /// comes from the index called `index`.
-pub fn listed_bytes(
+fn listed_bytes(
     folder: &Path,
     index: &str,
     files: &BTreeMap<String, String>,
@@ -259,6 +359,18 @@ pub fn check_earlier(
     force: bool,
     arguments: ArgumentStyle,
 ) -> Result<(), Failure> {
+    let now = serde_json::to_value(&scene.file).unwrap_or_default();
+    check_earlier_file(folder, index, now, force, arguments)
+}
+
+/// [`check_earlier`] for the tree of a scene file.
+fn check_earlier_file(
+    folder: &Path,
+    index: &str,
+    mut now: Value,
+    force: bool,
+    arguments: ArgumentStyle,
+) -> Result<(), Failure> {
     let earlier = || {
         let bytes = read_file(&folder.join(index), MAX_INDEX_BYTES).ok()?;
         let mut earlier: Value = serde_json::from_slice(&bytes).ok()?;
@@ -267,7 +379,6 @@ pub fn check_earlier(
     let Some(mut earlier) = earlier() else {
         return Ok(());
     };
-    let mut now = serde_json::to_value(&scene.file).unwrap_or_default();
     for tree in [&mut earlier, &mut now] {
         tree.as_object_mut().map(|fields| fields.remove("run"));
     }

@@ -6,18 +6,21 @@
 //! the difference to the next, in pairs of batches too, and the largest step is taken at which the
 //! bias is below the noise. Theory is compared over the same step, so bias does not enter.
 
+mod table;
+
 use crate::fit::{size, spread};
 use crate::sweep::values::{Setting, Sweep, real_value};
 use crate::sweep::{self, FinishedSweep, SweepPoints, SweepRequest};
-use etendue_compare::{Class, Estimate, MIN_DIFFERING, NormalEquations, Residuals, Verdict, sidak};
-use etendue_field::{Complex, Slices, VirtualPlane, percent, tidy, uncertain};
-use etendue_pipeline::{Leader, Reporter, Work, batches_of_run, load};
+use etendue_compare::{
+    Class, Estimate, MIN_DIFFERING, NormalEquations, Residuals, Verdict, paired_changes, sidak,
+};
+use etendue_field::{Complex, Slices, VirtualPlane};
+use etendue_pipeline::{Leader, Reporter, Work, load, stored_batches};
 use etendue_predict::{Applicability, predict};
-use etendue_report::table;
-use etendue_scene::{Scene, dotted, unit};
-use etendue_spectrum::{Measurement, estimate};
-use etendue_store::Failure;
+use etendue_scene::{Scene, dotted};
+use etendue_spectrum::{Measurement, Uncertain, estimate};
 use etendue_store::npz::Npz;
+use etendue_store::{ArgumentStyle, Failure};
 use ndarray::Array3;
 use std::path::Path;
 
@@ -61,6 +64,8 @@ pub struct PlaneDerivative {
     /// The p-value of the hypothesis that theory's difference over the same step is true. `None` if
     /// predictions have numerical errors that replicates do not show.
     pub p_value: Option<f64>,
+    /// The derivatives of both bandwidths and of the slope, with their errors from pairs of batches.
+    pub numbers: [Option<Uncertain>; 3],
 }
 
 impl PlaneDerivative {
@@ -102,15 +107,18 @@ impl DerivedField {
     pub fn parse(text: &str) -> Result<Self, String> {
         let (path, step) = match text.split_once('=') {
             None => (text, None),
-            Some((path, step)) => {
-                let step = step.trim().parse().ok();
-                let step = step.filter(|step: &f64| step.is_finite() && *step > 0.0);
-                (
-                    path,
-                    Some(step.ok_or("must be FIELD or FIELD=STEP, with a step above 0")?),
-                )
-            }
+            // No step is not a number.
+            Some((path, step)) => (path, Some(step.trim().parse().unwrap_or(f64::NAN))),
         };
+        let of_step = |allowed| format!("must be FIELD or FIELD=STEP, with {allowed}");
+        Self::new(path, step).map_err(of_step)
+    }
+
+    /// The field at a path. Fails with the allowed steps if `step` is not one.
+    pub fn new(path: &str, step: Option<f64>) -> Result<Self, &'static str> {
+        if step.is_some_and(|step| !(step.is_finite() && step > 0.0)) {
+            return Err("a step above 0");
+        }
         Ok(Self {
             path: dotted(path.trim()),
             step,
@@ -122,7 +130,10 @@ impl DerivedField {
     pub fn sweep(&self, request: &mut SweepRequest) -> Result<f64, Failure> {
         let arguments = request.scene.arguments;
         let (source, sweeps) = request.settings();
-        let argument = arguments.with("derivative", &self.path);
+        let argument = match arguments {
+            ArgumentStyle::Command => arguments.with("derivative", &self.path),
+            ArgumentStyle::Python => arguments.with("field", &self.path),
+        };
         if let Some(Sweep { path, .. }) = sweeps.first() {
             return Err(Failure::bad_input(format!(
                 "{} has several values; allowed beside {argument}: one value",
@@ -135,8 +146,13 @@ impl DerivedField {
             let point = vec![(self.path.clone(), end)];
             sweep::scene_at(&source, &point, |_| ()).map_err(|failure| Failure {
                 message: format!(
-                    "{}: a value at a step of the derivative by {} is not allowed; --derivative FIELD=STEP states a smaller step",
-                    failure.message, self.path
+                    "{}: a value at a step of the derivative by {} is not allowed; {} states a smaller step",
+                    failure.message,
+                    self.path,
+                    match arguments {
+                        ArgumentStyle::Command => "--derivative FIELD=STEP",
+                        ArgumentStyle::Python => "step=",
+                    }
                 ),
                 ..failure
             })?;
@@ -185,7 +201,7 @@ pub fn derivative(
     let stage = reporter.begin(Work::Stage("measuring derivatives"));
     // The points before and after the value, for each step.
     let ends = [0, 1, 2].map(|rung| [rung, 2 * STEPS.len() - 1 - rung]);
-    let read = |i: usize| batches_of_run(&folder.join(&sweep.found[i].folder), &points.scenes[i]);
+    let read = |i: usize| stored_batches(&folder.join(&sweep.found[i].folder), &points.scenes[i]);
     let pair = |[a, b]: &[usize; 2]| Ok([read(*a)?, read(*b)?]);
     let measured: Vec<_> = ends.iter().map(pair).collect::<Result<_, Failure>>()?;
     let of_point = |i: usize| sweep.found[i].point[0].1;
@@ -202,7 +218,7 @@ pub fn derivative(
         files.push((format!("{}/{ARRAYS}", plane.name), bytes));
         all.extend(rungs);
     }
-    files.push((TABLE.to_owned(), csv(&field.path, &all)?));
+    files.push((TABLE.to_owned(), PlaneDerivative::csv(&field.path, &all)?));
     drop(stage);
     let chosen = all.into_iter().filter(|plane| plane.is_chosen);
     let chosen: Vec<PlaneDerivative> = chosen.collect();
@@ -224,6 +240,8 @@ struct Ladder<'a> {
     /// ‖S‖ in the middle of the smallest step.
     norm: f64,
     derivatives: Vec<Residuals>,
+    /// The changes of these numbers over two steps.
+    changes: Vec<[Option<Uncertain>; 3]>,
 }
 
 /// Theory's difference over a step, with its replicates.
@@ -256,9 +274,13 @@ impl<'a> Ladder<'a> {
                 .map(|end| end.at_plane(i).map(|batch| batch.slices.half.view()));
             Residuals::of_pairs(plane.grid, a, b).scaled(1.0 / (2.0 * step))
         });
+        let changes = measured.iter().map(|[a, b]| paired_changes([a, b], i));
         Ok(Self {
             plane,
             steps,
+            changes: changes
+                .collect::<Result<_, _>>()
+                .map_err(Failure::cannot_run)?,
             lowest: mean(&first[0])?.half,
             norm: 0.5 * middle.norm(),
             derivatives: derivatives.collect(),
@@ -326,6 +348,12 @@ impl<'a> Ladder<'a> {
             bias: has_errors.then(|| bias / length),
             share,
             p_value,
+            numbers: self.changes[k].map(|change| {
+                let [value, error] = change
+                    .map(|of| [of.value, of.error])?
+                    .map(|x| 0.5 * x / self.steps[k]);
+                Some(Uncertain { value, error })
+            }),
         }
     }
 }
@@ -398,83 +426,5 @@ fn verdict(planes: &[PlaneDerivative], alpha: f64) -> Verdict {
         Verdict::Undecided
     } else {
         Verdict::Pass
-    }
-}
-
-const HEADER: [&str; 10] = [
-    "field",
-    "plane",
-    "step",
-    "chosen",
-    "size",
-    "noise",
-    "bias",
-    "share_of_theory",
-    "error_of_share",
-    "p_value",
-];
-
-/// The table with all digits: a row for each plane and each step.
-fn csv(field: &str, all: &[PlaneDerivative]) -> Result<Vec<u8>, Failure> {
-    let digits = |number: Option<f64>| number.map_or(String::new(), |x| format!("{x:?}"));
-    let rows = all.iter().map(|of| {
-        vec![
-            field.to_owned(),
-            of.plane.clone(),
-            digits(Some(of.step)),
-            of.is_chosen.to_string(),
-            digits(Some(of.size)),
-            digits(of.noise),
-            digits(of.bias),
-            digits(of.share.map(|share| share.value)),
-            digits(of.share.map(|share| share.error)),
-            digits(of.p_value),
-        ]
-    });
-    table::csv(&HEADER.map(str::to_owned), rows)
-}
-
-impl Derivative {
-    /// The table for a terminal.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let unit = unit(&self.field);
-        let [of_step, of_size] = match unit {
-            "" => [String::new(), String::new()],
-            unit => [format!(" [{unit}]"), format!(" [1/{unit}]")],
-        };
-        let header = [
-            "plane".to_owned(),
-            format!("step{of_step}"),
-            format!("‖∂S‖/‖S‖{of_size}"),
-            "noise".to_owned(),
-            "bias".to_owned(),
-            "times theory's".to_owned(),
-            "p".to_owned(),
-        ];
-        let none = || "–".to_owned();
-        let rows = self.planes.iter().map(|of| {
-            let share = of.share.map(|share| uncertain(share.value, share.error));
-            vec![
-                of.plane.clone(),
-                tidy(of.step),
-                format!("{:.4}", of.size),
-                of.noise.map_or_else(none, |noise| percent(noise, 3)),
-                of.bias.map_or_else(none, |bias| percent(bias, 3)),
-                share.unwrap_or_else(none),
-                of.p_value.map_or_else(none, |p| format!("{p:.5}")),
-            ]
-        });
-        let mut lines = vec![
-            format!("∂S/∂({}) at {}:", self.field, tidy(self.value)),
-            String::new(),
-        ];
-        lines.extend(table::aligned(
-            std::iter::once(header.to_vec()).chain(rows).collect(),
-        ));
-        let open = self.planes.iter();
-        let open = open.filter_map(|of| Some(format!("{}: {}", of.plane, of.open()?)));
-        lines.extend(open);
-        lines.join("\n")
     }
 }

@@ -41,7 +41,7 @@ impl Diff {
             .iter()
             .all(|plane| matches!(plane.found, PlaneDifference::Missing(_)))
         {
-            let [a, b] = [a, b].map(|result| result.folder.display());
+            let [a, b] = [a, b].map(|result| result.folder().display());
             return Err(Failure::bad_input(format!(
                 "{a} and {b} have no plane in common: they are results of different scenes"
             )));

@@ -32,7 +32,7 @@ pub fn json(diff: &Diff) -> Value {
 fn of_result(result: &StoredResult) -> Value {
     let index = &result.index;
     json!({
-        "folder": result.folder,
+        "folder": result.folder(),
         "scene": index.scene,
         "photons": index.photons,
         "batches": index.batches.len(),

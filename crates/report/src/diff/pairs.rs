@@ -66,7 +66,7 @@ pub(super) fn unpaired(a: &StoredResult, b: &StoredResult) -> Option<String> {
     ];
     let missing = [a, b].into_iter().filter(|result| !result.has_batches());
     let missing = missing.map(|result| {
-        let folder = result.folder.display();
+        let folder = result.folder().display();
         format!("{folder} has no batches (run it with --save batches)")
     });
     differing.into_iter().flatten().chain(missing).next()

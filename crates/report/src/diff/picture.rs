@@ -31,8 +31,8 @@ impl Diff {
             title: &format!("{}: power spectra of two results", spaced(name)),
             note: &format!(
                 "A: {}, B: {}; they differ by {}, and noise alone is {}",
-                self.results[0].folder.display(),
-                self.results[1].folder.display(),
+                self.results[0].folder().display(),
+                self.results[1].folder().display(),
                 percent(test.difference, 3),
                 percent(test.noise, 3)
             ),

@@ -292,7 +292,7 @@ impl ResultPair<'_> {
     /// there is one.
     fn invalid(&self, slices: [&StoredSlices; 2]) -> Option<String> {
         for (slices, result) in slices.into_iter().zip([self.a, self.b]) {
-            let folder = result.folder.display();
+            let folder = result.folder().display();
             let Sample {
                 sigma, noise_dof, ..
             } = &slices.sample;

@@ -2,47 +2,21 @@
 
 use etendue_compare::{Class, Estimate, Residuals, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
-use etendue_scene::{Color, read_below};
 use etendue_store::batches::ranged;
 use etendue_store::npz::NpzFile;
-use etendue_store::stored::listed_bytes;
-use etendue_store::{Failure, MAX_INDEX_BYTES, MEASUREMENT, SUMMARY, sealed, theory};
+use etendue_store::stored::ResultFolder;
+use etendue_store::{Failure, MEASUREMENT, theory};
 use ndarray::{Array1, Array2, Array3, Array4, Axis};
 use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-
-/// The error of a folder without a result. The folder of `run --rgb` has a result in each
-/// of its folders.
-#[must_use]
-pub fn no_result(folder: &Path) -> Failure {
-    let shown = folder.display();
-    let colors = [Color::Red, Color::Green, Color::Blue].map(Color::name);
-    let is_rgb = colors
-        .iter()
-        .all(|c| folder.join(c).join(SUMMARY).is_file());
-    Failure::bad_input(if is_rgb {
-        format!(
-            "{shown} holds results of three channels; allowed: one of {shown}/red, {shown}/green and {shown}/blue"
-        )
-    } else if folder.is_dir() {
-        format!(
-            "{shown} holds no result, because it has no {SUMMARY}; allowed: a folder that run, compare or measure has written"
-        )
-    } else {
-        format!("{shown}: no such folder")
-    })
-}
+use std::path::Path;
 
 /// A result folder of `run` or `compare`, or a measurement, by any version of this program.
 #[derive(Debug)]
 pub(super) struct StoredResult {
-    pub(super) folder: PathBuf,
     pub(super) index: ResultIndex,
-    /// The name of the index.
-    name: &'static str,
+    files: ResultFolder,
 }
 
 /// The part of a `summary.json` or `measurement.json` that `diff` needs.
@@ -60,7 +34,6 @@ pub(super) struct ResultIndex {
     /// The planes. A measurement does not list its planes, so they have no numbers.
     #[serde(default)]
     pub(super) planes: Vec<StoredPlane>,
-    files: BTreeMap<String, String>,
 }
 
 /// The numbers of a plane in `summary.json` that `diff` needs. If a number does not exist, it is
@@ -149,26 +122,18 @@ pub(super) struct StoredBatches {
 
 impl StoredResult {
     pub(super) fn read(folder: &Path) -> Result<Self, Failure> {
-        let indices = [SUMMARY, MEASUREMENT];
-        let mut indices = indices.into_iter().map(|name| (name, folder.join(name)));
-        let Some((name, path)) = indices.find(|(_, path)| path.is_file()) else {
-            return Err(no_result(folder));
-        };
-        let shown = path.display();
-        let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
-        let bytes = read_below(folder, name, MAX_INDEX_BYTES)
-            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
-        sealed::check_format(&bytes).map_err(fault)?;
-        let mut index: ResultIndex = serde_json::from_slice(&bytes)
+        let files = ResultFolder::read(folder)?;
+        let path = folder.join(files.name);
+        let fault = |what: String| Failure::bad_input(format!("{}: {what}", path.display()));
+        let mut index: ResultIndex = serde_json::from_slice(&files.index)
             .map_err(|e| fault(format!("the file is not a summary of a run: {e}")))?;
-        sealed::check_seal(&bytes).map_err(fault)?;
         if index.batches.len() < 3 {
             return Err(fault(format!(
                 "batches: {}; must be at least 3",
                 index.batches.len()
             )));
         }
-        if name == MEASUREMENT {
+        if files.name == MEASUREMENT {
             let planes = index.scene_file["planes"].as_array();
             let planes = planes.into_iter().flatten();
             let names = planes.filter_map(|plane| plane["name"].as_str());
@@ -178,11 +143,15 @@ impl StoredResult {
             });
             index.planes = planes.collect();
         }
-        Ok(Self {
-            folder: folder.to_owned(),
-            index,
-            name,
-        })
+        Ok(Self { index, files })
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        &self.files.folder
+    }
+
+    fn lists(&self, name: &str) -> bool {
+        self.files.hash(name).is_some()
     }
 
     pub(super) fn plane(&self, name: &str) -> Option<&StoredPlane> {
@@ -191,12 +160,12 @@ impl StoredResult {
 
     /// The hash of the file with a plane's arrays.
     pub(super) fn hash(&self, plane: &str) -> Option<&String> {
-        self.index.files.get(&self.slices_of(plane))
+        self.files.hash(&self.slices_of(plane))
     }
 
     fn slices_of(&self, plane: &str) -> String {
         let slices = format!("{plane}/slices.npz");
-        match self.index.files.contains_key(&slices) || !self.has_batches() {
+        match self.lists(&slices) || !self.has_batches() {
             true => slices,
             false => batches_of(plane),
         }
@@ -205,7 +174,7 @@ impl StoredResult {
     /// Checks whether the folder has the batches of its planes.
     pub(super) fn has_batches(&self) -> bool {
         let mut planes = self.index.planes.iter();
-        planes.all(|plane| self.index.files.contains_key(&batches_of(&plane.name)))
+        planes.all(|plane| self.lists(&batches_of(&plane.name)))
     }
 
     /// The batches of a plane, [batch, azimuth, ρ ≥ 0, ν].
@@ -227,13 +196,12 @@ impl StoredResult {
 
     /// The file of predictions that a run saves beside its batches.
     pub(super) fn predictions(&self) -> Result<Option<NpzFile>, Failure> {
-        let is_listed = self.index.files.contains_key(theory::FILE);
+        let is_listed = self.lists(theory::FILE);
         is_listed.then(|| self.open(theory::FILE)).transpose()
     }
 
     fn open(&self, name: &str) -> Result<NpzFile, Failure> {
-        let bytes = listed_bytes(&self.folder, self.name, &self.index.files, name)?;
-        NpzFile::new(self.folder.join(name), bytes)
+        NpzFile::new(self.folder().join(name), self.files.bytes(name)?)
     }
 
     /// The slices of a plane from the plane's arrays.

@@ -46,7 +46,7 @@ fn header(letter: char, result: &StoredResult) -> String {
     } = &result.index;
     format!(
         "{letter}: {}: {scene}, {} photons in {batches} batches, method {method}, seed {seed}, version {version}",
-        result.folder.display(),
+        result.folder().display(),
         grouped(*photons),
         batches = batches.len()
     )

@@ -3,7 +3,7 @@
 
 use crate::sweep::table::{BANDWIDTHS, PointResult, SLOPE, unit_of};
 use etendue_compare::paired_changes;
-use etendue_pipeline::batches_of_run;
+use etendue_pipeline::stored_batches;
 use etendue_report::diff::{Diff, json};
 use etendue_report::table;
 use etendue_scene::Scene;
@@ -71,9 +71,9 @@ impl PointDifferences {
             if diff["pairs"] == true {
                 let of_a = match earlier {
                     Some(read) => read,
-                    None => batches_of_run(&folders[0], &scenes[0])?,
+                    None => stored_batches(&folders[0], &scenes[0])?,
                 };
-                let of_b = batches_of_run(&folders[1], &scenes[1])?;
+                let of_b = stored_batches(&folders[1], &scenes[1])?;
                 all.add([a, b], &diff, [&of_a, &of_b])?;
                 before = Some(of_b);
             }

@@ -11,7 +11,7 @@ mod points;
 mod quiet_reporter;
 mod request;
 mod run;
-mod table;
+pub(crate) mod table;
 pub mod values;
 
 pub use bandwidth::{BandwidthRow, bandwidths};
