@@ -49,7 +49,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "pipeline",
         5436,
-        3436,
+        3445,
         "a scene is measured against another one; a run with batches is a measurement; batches of a run of a known scene; differences are continued and shared by processes",
     ),
     (
@@ -62,8 +62,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "python",
         1640,
-        1850,
-        "theories of the user, as arrays and as functions; chains of scenes; `difference` compares pairs; `fit`",
+        2003,
+        "theories of the user, as arrays and as functions; chains of scenes; `difference` compares pairs; `fit`; `load` and `derivative`",
     ),
     ("rayfile", 2394, 2394, ""),
     (
@@ -92,14 +92,14 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "store",
         3185,
-        3755,
-        "predictions of other programs are read, and written; a method; measurements of other programs are read; runs of scenes with pictures give their batches; names of repeated arguments; planes of both scenes of a difference",
+        3873,
+        "predictions of other programs are read, and written; a method; measurements of other programs are read; runs of scenes with pictures give their batches; names of repeated arguments; planes of both scenes of a difference; results are read in one place, also of other versions",
     ),
     (
         "studies",
         4009,
-        6286,
-        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search; derivatives at the ends of ranges, from scenes that are read once",
+        6334,
+        "differences of neighbouring points; `fit`, and its plan; derivatives from pairs; fits without dark planes and endless fields; one step of a search; derivatives at the ends of ranges, from scenes that are read once; bandwidths and slopes of derivatives",
     ),
     (
         "theory",
@@ -119,7 +119,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_682,
+        69_689,
         "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds; runs against another scene are continued and shared; texts of figures are searched",
     ),
 ];
