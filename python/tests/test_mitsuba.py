@@ -24,6 +24,12 @@ FREQUENCIES = {"azimuths": 4, "rho": {"max": 12}, "nu": {"max": 12}}
 PLANE = etendue.mitsuba.Placement((0, 0, 2), (0, 0, 1), (1, 0, 0), WINDOW, FREQUENCIES)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def variant():
+    # Tests of other modules leave another one.
+    mi.set_variant("llvm_ad_mono")
+
+
 @pytest.fixture(scope="module")
 def photons():
     low, high = EDGES

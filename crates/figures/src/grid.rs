@@ -38,6 +38,9 @@ pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
 const GUIDE_END: f64 = 0.1;
 /// Minimum distance between the texts of two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
+/// A y label may be longer than its pictures by this length: labels of two rows that share an axis
+/// are one.
+const OVERHANG: f64 = 13.0;
 /// Maximum number of pictures side by side.
 const MAX_COLUMNS: usize = 8;
 
@@ -252,6 +255,13 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
+    /// The height that a text beside a row may have beyond the row, without those of other rows.
+    fn beside(&self, row: usize) -> f64 {
+        let gap = |above: usize| ROW_GAPS[usize::from(!self.shares_x(above))];
+        let above = row.checked_sub(1).map_or(ROW_GAPS[1], gap);
+        above.min(gap(row)) - 2.0 * TEXT_GAP
+    }
+
     /// The largest value of the rows that share a color bar with the row `index`.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
@@ -282,6 +292,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
                     self.labelled_across(index, places, i),
                     self.labelled_down(index, place.column),
                 ],
+                overhang: self.beside(index).max(OVERHANG),
                 ..Panel::new(area, &picture.x, &picture.y)
             };
             let peak = if row.shared { highest } else { largest(values) };
@@ -295,11 +306,10 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         let style = TextStyle::new(at, HEAD_TEXT, Anchor::Middle)
             .bold()
             .upwards();
-        svg.fitted(
-            style,
-            row.name,
-            self.height() + ROW_GAPS[0] - 2.0 * TEXT_GAP,
-        );
+        let room = |index: usize| self.height() + self.beside(index);
+        let names = self.rows.iter().enumerate();
+        let style = style.fitting(names.map(|(i, row)| (row.name, room(i))));
+        svg.fitted(style, row.name, room(index));
         Ok(bar)
     }
 

@@ -27,6 +27,8 @@ pub(crate) struct Panel<'a> {
     /// from the top of the panel. These lengths may include panels to the right and below. A label
     /// whose length is `None` is not written.
     pub(crate) labelled: [Option<f64>; 2],
+    /// The y label may be longer than its length by this length.
+    pub(crate) overhang: f64,
 }
 
 impl<'a> Panel<'a> {
@@ -39,6 +41,7 @@ impl<'a> Panel<'a> {
             label_x: true,
             label_y: true,
             labelled: [Some(area.width), Some(area.height)],
+            overhang: OVERHANG[1],
         }
     }
 
@@ -124,7 +127,7 @@ impl<'a> Panel<'a> {
             let at = [left - TICK - 3.0 - widest - 8.0, middle];
             let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
             let label = self.y.quantity.label(self.y.exponent());
-            svg.fitted(style, &label, height + OVERHANG[1]);
+            svg.fitted(style, &label, height + self.overhang);
         }
     }
 }

@@ -16,20 +16,20 @@ impl Section {
         lights.map(|light| light.start[0]).fold(0.0, f64::min)
     }
 
-    /// Draws the scene to scale and the cut through y; returns the area for the main cut.
+    /// Draws the scene to scale and, if `all`, the cut through y; returns the area for the main cut.
     /// The heights of drawings are multiplied by `scale`.
     pub(crate) fn draw_above(
         &self,
         svg: &mut Svg,
         [x, y]: [f64; 2],
         [width, height]: [f64; 2],
-        scale: f64,
+        (all, scale): (bool, f64),
     ) -> Area {
         let mut top = y;
         if let Some(world) = &self.world {
             top = world.draw(svg, [x, top], [width, scale * DrawnWorld::HEIGHT]);
         }
-        if let Some(other) = &self.other {
+        if let Some(other) = self.other.as_ref().filter(|_| all) {
             let area = Area::new([x, top + SectionLayout::AXIS], [width, scale * OTHER]);
             let cut = SectionLayout::new(other, area);
             cut.draw(svg);
@@ -53,7 +53,7 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let inner = (120.0 * section.planes.len() as f64).max(640.0);
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);
-    let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT], 1.0);
+    let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT], (true, 1.0));
     let cut = SectionLayout::new(section, area);
     cut.draw(&mut svg);
     let pitch = inner / section.planes.len().max(1) as f64;

@@ -57,7 +57,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let drawn = if style.scene { &mut svg } else { &mut unseen };
     let size = [inner, CUT];
     let section = strip.section;
-    let area = section.draw_above(drawn, [LEFT, top], size, style.scale);
+    let area = section.draw_above(drawn, [LEFT, top], size, (false, style.scale));
     let cut = SectionLayout::new(strip.section, area);
     cut.draw(drawn);
     let mut bottom = if style.scene { cut.bottom() } else { top };

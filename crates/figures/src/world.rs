@@ -37,10 +37,12 @@ impl DrawnWorld {
         if let [.., from, to] = path[..] {
             arrow(svg, from, to);
         }
+        for plane in &self.planes {
+            let [from, to] = plane.map(place);
+            svg.line(from, to, Stroke::solid(PLANE, 1.2));
+        }
         let mut numbers: Vec<[f64; 2]> = Vec::new();
-        for (i, plane) in self.planes.iter().enumerate() {
-            let ends = plane.map(place);
-            svg.line(ends[0], ends[1], Stroke::solid(PLANE, 1.2));
+        for i in 0..self.planes.len() {
             let [number, end] = self.free(i, &numbers, area, &place);
             if distance(number, [end; 2]) > JOINED {
                 svg.line(end, number, Stroke::solid(FAINT, STROKE));
