@@ -173,3 +173,17 @@ fn rough_plastic_has_one_roughness() {
     let message = "alpha of roughplastic is a texture; allowed: a number";
     assert_refused(&causes, &[message]);
 }
+
+#[test]
+fn polarizing_plastic_is_rough_plastic_with_a_note() {
+    let folder = files();
+    let read = |plugin: &str| {
+        let alpha = r#"<float name="alpha" value="0.3"/>"#;
+        let scene = ply(&format!("<bsdf type=\"{plugin}\">{alpha}</bsdf>"));
+        read_in(&scene, folder.path(), Color::Luminance).unwrap()
+    };
+    let [rough, polarizing] = ["roughplastic", "pplastic"].map(read);
+    let material = |of: &etendue_import::Imported| format!("{:?}", of.world.materials);
+    assert_eq!(material(&rough), material(&polarizing));
+    assert_eq!(polarizing.notes.len(), rough.notes.len() + 1);
+}

@@ -17,7 +17,7 @@ use std::sync::Arc;
 const MAX_DEPTH: usize = 8;
 
 /// Plugins supported as materials.
-const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, principled, phong, twosided, mask, blendbsdf, null";
+const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, pplastic, principled, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
     /// The index of a material, or `None` if a cause of refusal was reported.
@@ -71,6 +71,10 @@ impl<'a> MitsubaReader<'a> {
             "conductor" | "roughconductor" => self.conductor(object),
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(object),
             "plastic" | "roughplastic" => self.plastic(object),
+            "pplastic" => {
+                object.note("pplastic is approximated by roughplastic, within about 1 %");
+                self.plastic(object)
+            }
             "principled" => self.principled(object),
             "phong" => self.phong(object),
             "twosided" => self.two_sided(object, depth),
@@ -190,7 +194,7 @@ impl<'a> MitsubaReader<'a> {
     /// The roughness. The inner `None` means a smooth surface. The outer `None` means that a cause
     /// of refusal was reported.
     fn roughness(&mut self, object: ObjectRef<'a>) -> Option<Option<Roughness>> {
-        if !object.plugin.starts_with("rough") {
+        if !object.plugin.starts_with("rough") && object.plugin != "pplastic" {
             return Some(None);
         }
         let known = [
