@@ -80,3 +80,34 @@ fn planes_stand_where_they_are() {
     places.dedup();
     assert_eq!(places.len(), 1, "{places:?}");
 }
+
+/// The view to scale lies in the plane in which the path turns, also if the x axis is across it.
+#[test]
+fn a_path_is_drawn_in_its_plane() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = common::scene("table1/concave_oblique.ron");
+    let height = |x_axis: &str| {
+        let line = format!(
+            "check {} --set path.x_axis={x_axis} --draw {x_axis}.svg",
+            scene.display()
+        );
+        told(folder.path(), line, 0);
+        let svg = fs::read_to_string(folder.path().join(format!("{x_axis}.svg"))).unwrap();
+        // The first line of three points is the path.
+        let lines = svg.split("<path d=\"M").skip(1);
+        let points = lines.map(|line| line.split('"').next().unwrap().split('L'));
+        let points = points.map(Iterator::collect::<Vec<_>>);
+        let path = points
+            .into_iter()
+            .find(|points| points.len() == 3)
+            .unwrap()
+            .into_iter();
+        let y: Vec<f64> = path
+            .map(|point| point.split(' ').nth(1).unwrap().parse().unwrap())
+            .collect();
+        y.iter().copied().fold(0.0, f64::max) - y.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    for x_axis in ["(1,0,0)", "(0,1,0)"] {
+        assert!(height(x_axis) > 50.0, "{x_axis}: {}", height(x_axis));
+    }
+}

@@ -1,4 +1,5 @@
-//! Draws a scene to scale in the plane of D and X at the light, if the path of the scene turns.
+//! Draws a scene to scale in the plane of D and X, or of D and Y, at the light, if the path of the
+//! scene turns.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
@@ -17,12 +18,19 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
     let last = legs.iter().any(turns).then(|| legs.last()).flatten()?;
-    let point = |leg: &Leg, [z, x]: [f64; 2]| {
-        let local = DVec3::new(x.clamp(-ENDLESS_METRES, ENDLESS_METRES), 0.0, z - leg.start);
-        let place = leg.frame.to_world(local);
-        [place.z, place.x]
+    // The plane in which the path turns more.
+    let turn = |axis: usize| {
+        let turns = legs.iter().map(|leg| leg.frame.d[axis].abs());
+        turns.fold(0.0, f64::max)
     };
-    let pieces = CuttingPlane { scene, axis: 0 }.pieces(planes);
+    let axis = usize::from(turn(1) > turn(0));
+    let point = |leg: &Leg, [z, across]: [f64; 2]| {
+        let mut local = DVec3::new(0.0, 0.0, z - leg.start);
+        local[axis] = across.clamp(-ENDLESS_METRES, ENDLESS_METRES);
+        let place = leg.frame.to_world(local);
+        [place.z, place[axis]]
+    };
+    let pieces = CuttingPlane { scene, axis }.pieces(planes);
     let objects = pieces.into_iter().map(|(leg, segment)| {
         let leg = &legs[leg];
         DrawnObject {
@@ -31,12 +39,12 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
                 end: point(leg, segment.end),
                 ..segment
             },
-            light: [leg.frame.d.z, leg.frame.d.x],
+            light: [leg.frame.d.z, leg.frame.d[axis]],
         }
     });
     let marks = planes.iter().map(|plane| {
-        let half = plane.window.x.half_width();
-        [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
+        let half = [plane.window.x, plane.window.y][axis].half_width();
+        [-half, half].map(|at| point(&legs[plane.leg], [plane.distance, at]))
     });
     // The path continues beyond the last surface, even if there is no plane behind it.
     let way = scene.path.first_hit().min(last.length);
