@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from html import escape
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from etendue import _etendue
 from etendue.commands import given, read_table
+from etendue.named import Named
 from etendue.plot import Shown, Variables, picture, plotted, table
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
@@ -90,7 +91,7 @@ class PlaneDerivative(Shown):
         return f"<etendue.PlaneDerivative at {self.plane}: size {self.size:.4g}, noise {100 * self.noise:.2g} %>"
 
 
-class Derivative(Mapping[str, PlaneDerivative]):
+class Derivative(Named[PlaneDerivative]):
     """The derivative of the spectra of all planes by a field: a mapping from the name of each plane."""
 
     def __init__(self, field: str, value: float, verdict: Verdict, text: str, planes: Mapping[str, PlaneDerivative]) -> None:
@@ -101,18 +102,7 @@ class Derivative(Mapping[str, PlaneDerivative]):
         self.verdict = verdict
         """"fail" if theory disagrees at a plane; "undecided" if a derivative has no errors, or a bias above its noise; else "pass"."""
         self._text = text
-        self._planes = dict(planes)
-
-    def __getitem__(self, name: str) -> PlaneDerivative:
-        if name not in self._planes:
-            raise KeyError(f"no plane {name!r}; there are {', '.join(self._planes)}")
-        return self._planes[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._planes)
-
-    def __len__(self) -> int:
-        return len(self._planes)
+        super().__init__(planes)
 
     def __str__(self) -> str:
         return self._text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from etendue import _etendue
 from etendue.difference import Sample
+from etendue.named import Named
 from etendue.plot import Shown, Variables, draw_each, picture, plotted, table
 from etendue.scene import Scene
 from etendue.stored import NotStored, Stored
@@ -167,7 +168,7 @@ class Plane(Shown):
         return f"<etendue.Plane {self.name}: {self.verdict}>"
 
 
-class Result(Mapping[str, Plane]):
+class Result(Named[Plane]):
     """The results of a run: its planes by name, and the verdict."""
 
     def __init__(self, scene: Scene | None, outcome: Outcome) -> None:
@@ -176,7 +177,7 @@ class Result(Mapping[str, Plane]):
         self.summary: Mapping[str, Any] = json.loads(outcome.summary())
         """`summary.json`, without the hashes of files."""
         planes = (Plane(outcome, i, self.summary) for i in range(len(self.summary["planes"])))
-        self._planes = {plane.name: plane for plane in planes}
+        super().__init__({plane.name: plane for plane in planes})
 
     @property
     def name(self) -> str:
@@ -202,18 +203,7 @@ class Result(Mapping[str, Plane]):
     @property
     def planes(self) -> dict[str, Plane]:
         """The planes by name."""
-        return dict(self._planes)
-
-    def __getitem__(self, name: str) -> Plane:
-        if name not in self._planes:
-            raise KeyError(f"no plane {name!r}; there are {', '.join(self._planes)}")
-        return self._planes[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._planes)
-
-    def __len__(self) -> int:
-        return len(self._planes)
+        return dict(self)
 
     def __reduce__(self) -> tuple[object, ...]:
         outcome = self._outcome
@@ -242,7 +232,7 @@ class Result(Mapping[str, Plane]):
     def __str__(self) -> str:
         if not isinstance(self._outcome, Stored):
             return self._outcome.table()
-        rows = [_HEADS, *map(_cells, self._planes.values())]
+        rows = [_HEADS, *map(_cells, self.values())]
         widths = [max(map(len, column)) for column in zip(*rows)]
         lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows]
         return "\n".join([f"{self.name}: {self.summary['photons']:,} photons, seed {self.summary['seed']}", "", *lines, "", f"verdict: {self.verdict}"])
@@ -253,7 +243,7 @@ class Result(Mapping[str, Plane]):
     def _repr_html_(self) -> str:
         photons = f"{self.summary['photons']:,}".replace(",", "\u202f")
         head = f"<p><b>{escape(self.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
-        return head + table(_HEADS, map(_cells, self._planes.values())) + picture(*self.values())
+        return head + table(_HEADS, map(_cells, self.values())) + picture(*self.values())
 
 
 def _compared(scene: Scene, batches: list[tuple[int, bytes]], planes: list[bytes]) -> Result:

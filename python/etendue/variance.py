@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from etendue import _etendue
 from etendue.commands import given
+from etendue.named import Named
 from etendue.progress import Progress, told
 from etendue.ranges import thread_count
 from etendue.scene import Method, Scene, Source, Value, as_scene
@@ -71,15 +72,17 @@ class SamplerVariance:
     three of them."""
 
 
-class Variance(Mapping[str, SamplerVariance]):
+class Variance(Named[SamplerVariance]):
     """The variances of all samplers at a plane: a mapping from the name of each sampler."""
+
+    _KIND = "sampler"
 
     def __init__(self, report: Mapping[str, Any], text: str) -> None:
         self.report = report
         """All numbers, as in `variance.json`."""
         self._text = text
         samplers = (_sampler(sampler) for sampler in report["samplers"])
-        self._samplers = {sampler.name: sampler for sampler in samplers}
+        super().__init__({sampler.name: sampler for sampler in samplers})
 
     @property
     def plane(self) -> str:
@@ -119,18 +122,7 @@ class Variance(Mapping[str, SamplerVariance]):
     @property
     def undecided(self) -> bool:
         """Whether a prediction is undecided."""
-        return any(sampler.shifted.undecided.any() for sampler in self._samplers.values())
-
-    def __getitem__(self, name: str) -> SamplerVariance:
-        if name not in self._samplers:
-            raise KeyError(f"no sampler {name!r}; there are {', '.join(self._samplers)}")
-        return self._samplers[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._samplers)
-
-    def __len__(self) -> int:
-        return len(self._samplers)
+        return any(sampler.shifted.undecided.any() for sampler in self.values())
 
     def __reduce__(self) -> tuple[object, ...]:
         return Variance, (self.report, self._text)
@@ -153,7 +145,7 @@ class Variance(Mapping[str, SamplerVariance]):
             import matplotlib.pyplot as plt
 
             ax = plt.gca()
-        for number, sampler in enumerate(self._samplers.values()):
+        for number, sampler in enumerate(self.values()):
             curve = sampler.unshifted if unshifted else sampler.shifted
             if curve is None or not curve.counts.size:
                 continue
@@ -172,7 +164,7 @@ class Variance(Mapping[str, SamplerVariance]):
         return self._text
 
     def __repr__(self) -> str:
-        return f"<etendue.Variance at {self.plane}: {', '.join(self._samplers)}>"
+        return f"<etendue.Variance at {self.plane}: {', '.join(self)}>"
 
 
 def variance(
