@@ -89,6 +89,10 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     })
 }
 
+/// Height of a line of keys, and distance between a swatch and its name.
+const KEY_LINE: f64 = 18.0;
+const KEY_GAP: f64 = 7.0;
+
 /// Draws the keys of predicted lines and of cells without a value; returns the lowest baseline.
 fn keys(
     svg: &mut Svg,
@@ -100,14 +104,14 @@ fn keys(
     let guides = guides(&strip.rows);
     let gaps = grid.has_gaps();
     let is_drawn = gaps || !guides.is_empty();
-    let y = bottom + if is_drawn { 18.0 } else { 0.0 };
-    if !guides.is_empty() {
-        guide_keys(svg, &guides, [LEFT, y], style);
-    }
+    let y = bottom + if is_drawn { KEY_LINE } else { 0.0 };
     if gaps {
         bar::gap_key(svg, right, y);
     }
-    y
+    match guides.is_empty() {
+        true => y,
+        false => guide_keys(svg, &guides, [LEFT, y], right + RIGHT, style),
+    }
 }
 
 /// The lines over the first row of pictures that has lines.
@@ -120,8 +124,15 @@ fn guides<'a>(rows: &'a [PlateRow<'_>]) -> Vec<&'a Guide> {
 }
 
 /// Draws the key of the dashed lines over spectra. If the lines in the plane of incidence and
-/// perpendicular to it differ, the key distinguishes the two.
-fn guide_keys(svg: &mut Svg, guides: &[&Guide], [x, y]: [f64; 2], style: &Style) {
+/// perpendicular to it differ, the key distinguishes the two; their names are below each other where
+/// `right` leaves no room. Returns the lowest baseline.
+fn guide_keys(
+    svg: &mut Svg,
+    guides: &[&Guide],
+    [x, mut y]: [f64; 2],
+    right: f64,
+    style: &Style,
+) -> f64 {
     let names: &[&str] = if guides.iter().any(|guide| guide.is_across) {
         &["shear in the plane of incidence", "across it"]
     } else {
@@ -129,19 +140,25 @@ fn guide_keys(svg: &mut Svg, guides: &[&Guide], [x, y]: [f64; 2], style: &Style)
     };
     let mut swatch = Area::new([x, y - 10.0], [34.0, 12.0]);
     for (name, is_across) in names.iter().zip([false, true]) {
+        let end = swatch.right() + KEY_GAP + width(name, TICK_TEXT);
+        if swatch.x > x && end > right {
+            y += KEY_LINE;
+            swatch = Area::new([x, y - 10.0], [34.0, 12.0]);
+        }
         svg.fill(swatch, &hex(Colors::Sequential(style.palette).at(0.0)));
         for [from, to] in ends([swatch.x, y - 4.0], [swatch.right(), y - 4.0], 9.0) {
             for stroke in guide_strokes(is_across) {
                 svg.line(from, to, stroke);
             }
         }
-        let at = [swatch.right() + 7.0, y];
+        let at = [swatch.right() + KEY_GAP, y];
         svg.text(
             TextStyle::new(at, TICK_TEXT, Anchor::Start).fill(SOFT),
             name,
         );
-        swatch.x = at[0] + width(name, TICK_TEXT) + 20.0;
+        swatch.x = end + 20.0;
     }
+    y
 }
 
 /// The table of a strip, with a row for each cell of each picture. In the table, pictures

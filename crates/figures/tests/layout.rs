@@ -157,18 +157,26 @@ fn strips_plates_and_curves_are_no_wider_than_two_columns() {
     }
 }
 
-/// Pictures become lower on a low page; letters keep their size.
+/// Pictures become lower on a low page; letters keep their size, also on a narrow one.
 #[test]
-fn a_page_has_the_height_of_its_style() {
+fn a_page_has_the_size_of_its_style() {
     let values = corner();
     let strip =
         |style: &Style| -> Result<Figure, Error> { path_in(&scene(8), values.view(), style) };
-    let free = strip(&Style::default()).unwrap().size()[1];
-    let mut style = Style::default();
-    style.height = 0.9 * free / 96.0;
-    let figure = style.within_height(strip).unwrap();
-    assert!(figure.size()[1] <= 0.9 * free, "{:?}", figure.size());
-    assert_eq!(figure.text_faults().unwrap(), Vec::<String>::new());
+    // On a narrow page, texts take most of the height.
+    for (width, share) in Style::WIDTHS.into_iter().zip([1.0, 0.9]) {
+        let mut style = Style::default();
+        style.width = width;
+        let free = strip(&style).unwrap().size()[1];
+        style.height = share * free / 96.0;
+        let figure = style.within_height(strip).unwrap();
+        let [across, high] = figure.size();
+        assert!(
+            across <= (96.0 * width).ceil() && high <= share * free,
+            "{across} {high}"
+        );
+        assert_eq!(figure.text_faults().unwrap(), Vec::<String>::new());
+    }
 }
 
 #[test]

@@ -25,7 +25,7 @@ use etendue_pipeline::Summary;
 use etendue_scene::Scene;
 use etendue_store::arrays::{radial_z, z};
 use etendue_store::{Failure, Results};
-use finer::{Finer, finer_power};
+use finer::finer_powers;
 use std::path::Path;
 use words::CoordinateNames;
 
@@ -121,14 +121,7 @@ fn spectrum(
 ) -> Result<Figure, Failure> {
     let [rho, nu] = spectrum_axes(at);
     let difference = radial_z(plane);
-    let finer = Finer::new(&plane.measured.grid, &at.window);
-    let finer = finer.map(|finer| {
-        let of = |slices, power| finer_power(&finer.of(slices), slices, power);
-        [
-            of(&plane.measured, &plane.radial.power),
-            of(&plane.predicted, &plane.predicted_radial),
-        ]
-    });
+    let finer = finer_powers(at, plane);
     comparison(&Comparison {
         title: &format!(
             "{}: power spectrum, {}",

@@ -39,8 +39,8 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "figures",
         4650,
-        4647,
-        "bars for errors of changes; pages have a height; texts that cannot be read are found; a third line; one size for texts beside each other, room for texts beside low pictures",
+        4664,
+        "bars for errors of changes; pages have a height; texts that cannot be read are found; a third line; one size for texts beside each other, room for texts beside low pictures; keys below each other",
     ),
     ("fuzz", 125, 126, "meshes come from a crate of their own"),
     ("meshfile", 1657, 1658, "an empty line"),
@@ -119,7 +119,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "tests of all kinds",
         69_203,
-        69_734,
+        69_747,
         "conventions that are mistaken are planted, and found; pairs over many seeds; fits, in Rust, in Python and over many seeds; runs against another scene are continued and shared; texts of figures are searched; paths are drawn in their plane",
     ),
 ];

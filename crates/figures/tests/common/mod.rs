@@ -136,8 +136,13 @@ pub fn path_in(
         slope: -1.0,
         is_across: false,
     };
+    let across = Guide {
+        slope: -0.5,
+        is_across: true,
+        ..guide
+    };
     let spectrum = || Picture {
-        guides: vec![guide],
+        guides: vec![guide, across],
         ..picture()
     };
     let planes = || section.planes.iter();

@@ -6,8 +6,8 @@
 //! values. The weights follow from K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W². K is the covariance between
 //! frequencies of white noise that is multiplied by the window.
 
-use etendue_compare::solved;
-use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
+use etendue_compare::{PlaneComparison, solved};
+use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, VirtualPlane, Window};
 use ndarray::{Array1, Array2, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
 
@@ -85,9 +85,19 @@ impl Finer {
     }
 }
 
+/// The measured and the predicted radial power of a plane between the frequencies of the scene.
+pub(super) fn finer_powers(at: &VirtualPlane, plane: &PlaneComparison) -> Option<[Array2<f64>; 2]> {
+    let finer = Finer::new(&plane.measured.grid, &at.window)?;
+    let of = |slices, power| finer_power(&finer.of(slices), slices, power);
+    Some([
+        of(&plane.measured, &plane.radial.power),
+        of(&plane.predicted, &plane.predicted_radial),
+    ])
+}
+
 /// The mean power over azimuths at the finer frequencies. The noise that was removed from
 /// `power`, at the frequencies of the scene, is also removed here.
-pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
+fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
     let noise = slices.radial_power() - power;
     let (from, to) = (&slices.grid, &finer.grid);
     let rows = linear(&from.rho, &to.rho);

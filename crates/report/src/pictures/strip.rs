@@ -1,7 +1,7 @@
 //! The strip along the path: the scene and, below it, the light field and spectrum of each plane.
 
 use super::cross_section::{across, differs_across};
-use super::finer::{Finer, finer_power};
+use super::finer::{Finer, finer_powers};
 use super::seen::{Seen, full_radials, light_fields, spectra};
 use super::{PictureFiles, verdict_lines};
 use crate::drawing;
@@ -23,8 +23,9 @@ pub fn path(case: &MeasuredScene, planes: &[PlaneComparison]) -> Result<PictureF
     PictureFiles::new("path".to_owned(), figure)
 }
 
-/// Draws the planes in the order in which light meets them. If the strip is a figure, it also shows
-/// the predicted spectra, below the measured spectra. `photons` is the number of emitted photons,
+/// Draws the planes in the order in which light meets them, with predicted below measured spectra;
+/// or, if the light at azimuth 0 differs from that at 90° and the strip is no figure, with measured
+/// spectra at both. `photons` is the number of emitted photons,
 /// which is lower in a partial measurement than the scene requests.
 pub fn strip_of(
     scene: &Scene,
@@ -49,7 +50,9 @@ pub fn strip_of(
     let off_chain = off_chains(&along);
     // Figures are not interpolated, because they were run at finer frequencies.
     let finer = along.par_iter().filter(|_| !is_figure && both.is_none());
-    let finer: Vec<_> = finer.map(PlaneOnPath::finer_power).collect();
+    let finer: Vec<_> = finer
+        .map(|at| finer_powers(at.seen.plane, at.seen.found))
+        .collect();
     let rows = rows_of(&along, both.as_deref(), &finer, &off_chain, is_figure);
     let shown = match (&both, is_figure && differs) {
         (Some(_), _) => BOTH.to_owned(),
@@ -84,7 +87,7 @@ pub fn strip_of(
 fn rows_of<'a>(
     along: &'a [PlaneOnPath<'_>],
     both: Option<&'a [BothSlices]>,
-    finer: &'a [Option<Array2<f64>>],
+    finer: &'a [Option<[Array2<f64>; 2]>],
     off_chain: &'a [Array2<f64>],
     is_figure: bool,
 ) -> Vec<PlateRow<'a>> {
@@ -102,18 +105,25 @@ fn rows_of<'a>(
         rows.push(light_fields("across", false, across));
         rows.push(spectra("its spectrum", false, spectra_at(1)));
     } else {
-        let finer = finer.iter().map(|values| Some(values.as_ref()?.view()));
-        let finer = finer.chain(std::iter::repeat(None));
-        let means = along.iter().zip(finer).map(|(at, finer)| Picture {
-            finer,
-            ..at.spectrum(&at.seen.found.radial.power)
-        });
-        rows.push(spectra("spectrum", false, means));
-    }
-    if is_figure {
-        let predicted = along.iter();
-        let predicted = predicted.map(|at| at.spectrum(&at.seen.found.predicted_radial));
-        rows.push(spectra("predicted", false, predicted));
+        let radial = |side: usize| {
+            let finer = finer
+                .iter()
+                .map(move |both| Some(both.as_ref()?[side].view()));
+            let finer = finer.chain(std::iter::repeat(None));
+            along.iter().zip(finer).map(move |(at, finer)| {
+                let PlaneComparison {
+                    radial,
+                    predicted_radial,
+                    ..
+                } = at.seen.found;
+                Picture {
+                    finer,
+                    ..at.spectrum([&radial.power, predicted_radial][side])
+                }
+            })
+        };
+        rows.push(spectra("spectrum", false, radial(0)));
+        rows.push(spectra("predicted", false, radial(1)));
     }
     if let Some([measured, predicted]) = full_radials(seen(), false) {
         rows.push(measured);
@@ -174,15 +184,6 @@ impl<'a> PlaneOnPath<'a> {
             guides: self.guides.clone(),
             ..self.seen.spectrum(power.view())
         }
-    }
-
-    /// The measured radial power between the frequencies of the scene.
-    fn finer_power(&self) -> Option<Array2<f64>> {
-        let PlaneComparison {
-            measured, radial, ..
-        } = self.seen.found;
-        let finer = Finer::new(&measured.grid, &self.seen.plane.window)?;
-        Some(finer_power(&finer.of(measured), measured, &radial.power))
     }
 }
 
