@@ -204,8 +204,8 @@ impl<'a> SectionLayout<'a> {
         };
         let bold = TextStyle::new([0.0; 2], HEAD_TEXT, Anchor::Middle).bold();
         let soft = TextStyle::new([0.0; 2], TICK_TEXT, Anchor::Middle).fill(SOFT);
-        let styles = [bold, soft];
-        let styles = [0, 1].map(|kind| styles[kind].fitting(texts(kind).into_iter()));
+        let styles =
+            [(bold, 0), (soft, 1)].map(|(style, kind)| style.fitting(texts(kind).into_iter()));
         for (plane, x, room, texts) in &each {
             badge(svg, [*x, y + BADGE], *plane);
             let lines = texts.iter().zip(styles);

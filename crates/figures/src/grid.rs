@@ -38,9 +38,6 @@ pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
 const GUIDE_END: f64 = 0.1;
 /// Minimum distance between the texts of two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
-/// A y label may be longer than its pictures by this length: labels of two rows that share an axis
-/// are one.
-const OVERHANG: f64 = 13.0;
 /// Maximum number of pictures side by side.
 const MAX_COLUMNS: usize = 8;
 
@@ -285,6 +282,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             let picture = &row.pictures[place.column];
             let values = picture.drawn();
             let area = Area::new([place.left, y], [self.side, self.height()]);
+            let usual = Panel::new(area, &picture.x, &picture.y);
             let panel = Panel {
                 label_x: !self.shares_x(index),
                 label_y: i == 0 || Self::differs(row, place.column),
@@ -292,8 +290,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
                     self.labelled_across(index, places, i),
                     self.labelled_down(index, place.column),
                 ],
-                overhang: self.beside(index).max(OVERHANG),
-                ..Panel::new(area, &picture.x, &picture.y)
+                overhang: self.beside(index).max(usual.overhang),
+                ..usual
             };
             let peak = if row.shared { highest } else { largest(values) };
             let shading = row.shading(peak, &self.style).showing(values);

@@ -84,8 +84,9 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
         let area = Area::new([LEFT, bottom + 26.0], [inner, style.scale * BARS]);
         let count = plate.heads.len();
         let evenly = |column| (column as f64 + 0.5) / count as f64;
-        let middles = (0..count).map(|column| LEFT + inner * evenly(column));
-        let middles: Vec<f64> = middles.collect();
+        let middles: Vec<f64> = (0..count)
+            .map(|column| LEFT + inner * evenly(column))
+            .collect();
         bottom = draw_bars(&mut svg, bars, area, &middles);
     }
     if grid.has_gaps() {
@@ -107,10 +108,8 @@ fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize,
             .split_once('\n')
             .unwrap_or((&heads[column], ""))
     };
-    let formulas = grid
-        .columns(block)
-        .any(|(column, ..)| !parts(column).1.is_empty());
     let columns = || grid.columns(block);
+    let formulas = columns().any(|(column, ..)| !parts(column).1.is_empty());
     let bold = TextStyle::new([0.0; 2], HEAD_TEXT, Anchor::Middle).bold();
     let bold = bold.fitting(columns().map(|(column, _, room)| (parts(column).0, room)));
     let second = TextStyle::new([0.0; 2], TICK_TEXT, Anchor::Middle);
@@ -136,12 +135,12 @@ pub(crate) fn feet(
     block: usize,
     baseline: f64,
 ) -> f64 {
-    let columns = grid.columns(block).map(|(column, middle, room)| {
-        let lines = feet.get(column).into_iter().flatten();
-        let lines: Vec<String> = lines.flat_map(|text| broken(text, room)).collect();
+    let with_lines = |(column, middle, room): (usize, f64, f64)| {
+        let texts = feet.get(column).into_iter().flatten();
+        let lines: Vec<String> = texts.flat_map(|text| broken(text, room)).collect();
         (lines, middle, room)
-    });
-    let columns: Vec<_> = columns.collect();
+    };
+    let columns: Vec<_> = grid.columns(block).map(with_lines).collect();
     let all = columns
         .iter()
         .flat_map(|(lines, _, room)| lines.iter().map(|text| (&**text, *room)));

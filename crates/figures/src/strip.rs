@@ -55,24 +55,19 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let top = style.title(&mut svg, LEFT, room, strip.title, strip.note);
     let mut unseen = Svg::default();
     let drawn = if style.scene { &mut svg } else { &mut unseen };
-    let size = [inner, CUT];
     let section = strip.section;
-    let area = section.draw_above(drawn, [LEFT, top], size, (false, style.scale));
-    let cut = SectionLayout::new(strip.section, area);
+    let area = section.draw_above(drawn, [LEFT, top], [inner, CUT], (false, style.scale));
+    let cut = SectionLayout::new(section, area);
     cut.draw(drawn);
     let mut bottom = if style.scene { cut.bottom() } else { top };
     let verdicts: &[Vec<String>] = if style.verdicts { &strip.verdicts } else { &[] };
+    // Lines from the cut to a lower block of columns would cross the columns above it, so columns in
+    // several blocks have only numbers.
+    let has_leaders = grid.blocks() == 1 && style.scene;
     for block in 0..grid.blocks() {
-        // Lines from the cut to a lower block of columns would cross the columns above it, so
-        // lower columns have only numbers.
-        let heads = bottom
-            + if grid.blocks() == 1 && style.scene {
-                LEADERS
-            } else {
-                14.0
-            };
-        for (column, middle, _) in grid.columns(block) {
-            if grid.blocks() == 1 && style.scene {
+        let heads = bottom + if has_leaders { LEADERS } else { 14.0 };
+        if has_leaders {
+            for (column, middle, _) in grid.columns(block) {
                 cut.leader(&mut svg, column, [middle, heads]);
             }
         }

@@ -134,7 +134,7 @@ impl Run {
 
     /// Fails if a run would take too long, or would not fit into the memory of this machine.
     pub fn check_limits(&self) -> Result<(), Failure> {
-        if let Some(other) = self.other() {
+        if let Some(other) = self.other()? {
             other.check_limits()?;
         }
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())

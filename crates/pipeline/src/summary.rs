@@ -89,7 +89,7 @@ impl Summary {
         Self {
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
-            against: scene.against.as_ref().map(|other| other.hash()),
+            against: scene.hash_of_other(),
             scene_file: scene.file.clone(),
             version: VERSION,
             seed: scene.run.seed,

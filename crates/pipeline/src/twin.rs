@@ -26,9 +26,10 @@ impl Run {
     }
 
     /// The run of the scene from which the difference is measured.
-    pub(crate) fn other(&self) -> Option<Self> {
-        let other = self.scene.against.as_deref()?.clone();
-        Self::of(other, Method::Photons, Vec::new()).ok()
+    pub(crate) fn other(&self) -> Result<Option<Self>, Failure> {
+        let other = self.scene.against.as_deref().cloned();
+        let run = |scene| Self::of(scene, Method::Photons, Vec::new());
+        other.map(run).transpose()
     }
 
     /// The predictions of the planes, and the measurement to which they belong: what was traced,
@@ -44,7 +45,7 @@ impl Run {
         reporter: &dyn Reporter,
     ) -> Result<(Measurement, Vec<Prediction>), Failure> {
         let mut predictions = self.predictions(workers, reporter)?;
-        let Some(other) = self.other() else {
+        let Some(other) = self.other()? else {
             return Ok((traced, predictions));
         };
         let known = other.predictions(None, reporter)?;

@@ -325,6 +325,12 @@ impl Scene {
         scene_hash(&self.file, &self.inputs)
     }
 
+    /// The hash of the scene from which the difference is measured.
+    #[must_use]
+    pub fn hash_of_other(&self) -> Option<String> {
+        self.against.as_ref().map(|other| other.hash())
+    }
+
     /// The name of a surface.
     #[must_use]
     pub fn name_of(&self, object: Object) -> &str {

@@ -41,8 +41,7 @@ impl CheckpointStore {
     /// The batches of a run with results in `out`. The batches belong to this scene,
     /// method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
-        let other = scene.against.as_ref().map(|other| other.hash());
-        let other = other.unwrap_or_default();
+        let other = scene.hash_of_other().unwrap_or_default();
         let what = format!("{VERSION} {} {}{other}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
         Self {

@@ -343,7 +343,7 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     let summary: Value = serde_json::from_slice(&bytes).ok()?;
     let same = summary["scene_hash"] == scene.hash()
         && summary["version"] == VERSION
-        && summary["against"] == tree_of!(scene.against.as_ref().map(|other| other.hash()))
+        && summary["against"] == tree_of!(scene.hash_of_other())
         && summary["method"] == serde_json::to_value(method).ok()?;
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }

@@ -49,7 +49,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     (
         "pipeline",
         5436,
-        3445,
+        3446,
         "a scene is measured against another one; a run with batches is a measurement; batches of a run of a known scene; differences are continued and shared by processes",
     ),
     (
@@ -74,7 +74,7 @@ const LINES: &[(&str, usize, usize, &str)] = &[
     ),
     ("sampling", 495, 497, "its head says what it leaves out"),
     ("scatter", 1291, 1291, ""),
-    ("scene", 4796, 4809, "memory of pictures is counted"),
+    ("scene", 4796, 4811, "memory of pictures is counted"),
     (
         "scenefile",
         3036,

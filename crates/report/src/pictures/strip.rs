@@ -25,8 +25,8 @@ pub fn path(case: &MeasuredScene, planes: &[PlaneComparison]) -> Result<PictureF
 
 /// Draws the planes in the order in which light meets them, with predicted below measured spectra;
 /// or, if the light at azimuth 0 differs from that at 90° and the strip is no figure, with measured
-/// spectra at both. `photons` is the number of emitted photons,
-/// which is lower in a partial measurement than the scene requests.
+/// spectra at both. `photons` is the number of emitted photons, which is lower in a partial
+/// measurement than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
@@ -77,8 +77,11 @@ pub fn strip_of(
             .map(|at| verdict_lines(at.seen.found))
             .collect(),
     };
-    let style = style.copied().unwrap_or_default();
-    let figure = style.within_height(|style| strip(&drawn, style));
+    // Who draws a figure keeps its page low, with all of its parts.
+    let figure = match style {
+        Some(style) => strip(&drawn, style),
+        None => Style::default().within_height(|style| strip(&drawn, style)),
+    };
     figure.map_err(Failure::cannot_run)
 }
 
